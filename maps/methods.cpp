@@ -28,10 +28,11 @@ namespace penumbra::maps {
 
 namespace {
 
-/// Returns the kinds of light that a method is extended to with these options. To a sun's space goes what is flat of a
-/// camera, the frustum and slices of depth, and what depends on a pixel's moves (fit=view, cascades, tiles); not the
-/// camera's own perspective (the warps, fit=faces), nor the picture before (reproject=). A lamp's disks each see a part
-/// of the view samples, and have a camera's fit for none.
+/// Returns the kinds of light that a method is extended to with these options. A sun's light space (SunSpace) keeps
+/// planes plane: it supports the camera's frustum, slices of depth and moves of pixels along surfaces (fit=view,
+/// cascades, tiles), but neither the camera's own perspective (the warps, fit=faces) nor the previous picture
+/// (reproject=). Spheres support none of these options, because each disk of a lamp sees only a part of the view
+/// samples.
 Given given_with(Given given, const visibility::MethodOptions& options) {
   const auto fit = options.find("fit");
   const auto reproject = options.find("reproject");
@@ -57,7 +58,7 @@ visibility::MethodDescription described(visibility::MethodDescription descriptio
   return given.suns ? with_dome_suns(std::move(description)) : description;
 }
 
-/// Row of a method of this family, for every light that `kGiven` names.
+/// Returns the table row of a method of this family, extended to all lights and surfaces in `kGiven`.
 template <auto kDescribe, auto kMake, Given kGiven = Given{}>
 engines::MethodRow row() {
   engines::MethodRow row = engines::on_device<kDescribe, kMake>();
@@ -87,9 +88,10 @@ bool is_no_sphere(const visibility::Light& light) {
   return light.kind != visibility::LightKind::sphere;
 }
 
-/// Row of deep-penumbra. A sphere is up to 54 disks, each with a list for every texel of a map of its own; three disks
-/// are side by side in a face of a cube. With a quarter of `size` texels on a side, such a face has about as many
-/// texels as that of another light, where whole maps would take minutes.
+/// Returns the table row of deep-penumbra. A sphere is replaced by up to 54 disks, each with lists for every texel of
+/// its own map; in a face of a cube, three disks are side by side. So maps of a sphere have a quarter of `size` texels
+/// on a side: a face of the cube then has about as many texels as a face of another light. With whole maps a sphere
+/// would take minutes.
 engines::MethodRow deep_penumbra_row() {
   engines::MethodRow row = maps::row<deep_penumbra_description, make_deep_penumbra>();
   row.make = [make = row.make, describe = row.describe](const render::Machine& machine,
@@ -113,7 +115,7 @@ constexpr Given kWithoutSpheres{.suns = true, .spheres = false, .holes = true};
 
 bool passes_triangles(std::string_view name, const visibility::MethodOptions& options) {
   constexpr std::array kMethods{"shadow-map", "pcf", "pcss"};
-  // With others the camera, or the triangles that texels belong to, decide what is drawn, or OpenGL draws.
+  // With any other option, the camera or the triangles that texels belong to determine what is drawn, or OpenGL draws.
   constexpr std::array kOptions{"size",        "bias",     "depth",          "receiverPlane", "offsetFactor",
                                 "offsetUnits", "suns",     "window",         "weights",       "taps",
                                 "stages",      "softness", "blockerSamples", "filterSamples"};

@@ -11,8 +11,9 @@ namespace penumbra::maps {
 /// Returns the family's table of methods, best methods first.
 std::span<const engines::MethodRow> methods();
 
-/// Returns whether a method, of any family, takes with these options all triangles of planar lights and suns as they
-/// pass (visibility::PassesTriangles): one map from the light's centre, without products.
+/// Returns whether a method, of any family, can process the triangles of scenes with planar lights and suns as they
+/// pass (visibility::PassesTriangles) with these options: one map from the light's centre, and products that need no
+/// triangles.
 bool passes_triangles(std::string_view name, const visibility::MethodOptions& options);
 
 }  // namespace penumbra::maps

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels on the levels (levels.glsl) of a receiver processed by a workgroup (group_kernel.glsl): the kernel on the
-// coarser of two levels comes after the one on the finer. The shader defines
+// Kernels on the levels (levels.glsl) of a receiver processed by a workgroup (group_kernel.glsl). The kernel on the
+// coarser of two levels is processed after the kernel on the finer level. The shader defines
 //   Kernel kernel_at_level(MapFace face)    the receiver's kernel on the current level
 #include "maps/backprojection/levels.glsl"
 
@@ -33,8 +33,8 @@ Kernel kernel_within_budget(MapFace face, Kernel kernel) {
 }
 
 // Returns the blocks of the current level that can hide some of the light, none of which is nearer to the light than
-// `near`. Removes, twice, the parts of the kernel that its blocks and the blocks beside them (to whose depths patches
-// and quads extend) leave unhidden. Defined after the light's `lower` and `upper`, and search.glsl.
+// `near`. Twice removes the parts of the kernel that its blocks and their neighbours (to whose depths patches and quads
+// extend) cannot hide. Included after search.glsl and the definition of the light's `lower` and `upper`.
 Kernel blocks_on_light(MapFace face, float near, int padding) {
   // On a sideways face, the lower border of a block may be many rows below its nearest texel.
   if (face.axis != 2 && level() > 0) return Kernel(ivec2(0), ivec2(level_size()) - 1, false);

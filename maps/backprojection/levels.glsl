@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Coarse levels of a map in place of the map (Guennebaud, Barthe and Paulin 2007; Schwarz and Stamminger 2008): a texel
-// of level l has the nearest depth of 2^l x 2^l texels. Either one level for all receivers, or the finest whose kernel
-// has no more texels than a budget. A level between two whole levels is a blend of both: the coarser is weighted by the
-// fraction. Included after kernel.glsl and taps.glsl; the shader has own.level, own.budget and own.blend, and defines
-// before
+// of level l has the nearest depth of 2^l x 2^l texels. Either one level serves all receivers, or a receiver uses the
+// finest level on which its kernel has no more texels than a budget. A level between two whole levels is a blend of
+// both: the coarser is weighted by the fraction. Included after kernel.glsl and taps.glsl; the shader has own.level,
+// own.budget and own.blend, and first defines
 //   LEVEL_MAPS        the binding of LevelMaps' buffer
 //   const uint kLevels   kFinestLevel ...
 #include "maps/backprojection/level_maps.shared.h"

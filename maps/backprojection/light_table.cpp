@@ -19,8 +19,8 @@ namespace penumbra::maps {
 namespace {
 
 constexpr std::uint32_t kCells = 256;
-/// Fraction of its bounding rectangle that a rectangle light may leave out, by the rounding of its stored corners, and
-/// still count as the whole rectangle: V is off by no more than this. A light that leaves out more has a table, as any
+/// A rectangle light counts as its whole bounding rectangle if the rounding of its stored corners leaves out no more
+/// than this fraction of the rectangle: V is off by no more than this. A light that leaves out more has a table, like a
 /// polygon.
 constexpr double kPerpendicular = 1e-6;
 

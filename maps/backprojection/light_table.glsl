@@ -35,8 +35,8 @@ uint light_between(vec2 a, vec2 b) {
   return uint(max(share, 0));
 }
 
-// Returns the fraction of a disk of radius 1 on one side of a line; the line is at distance t from the disk's centre on
-// the other side. (Drivers may be 1e-4 off in asin.)
+// Returns the fraction of a disk of radius 1 on the inner side of a line at the signed distance t from its centre: all
+// of the disk for t >= 1, none for t <= -1. (Drivers may be 1e-4 off in asin.)
 float disk_beside_line(float t) {
   if (abs(t) >= 1.0) return t > 0.0 ? 1.0 : 0.0;
   const float half_chord = sqrt((1.0 - t) * (1.0 + t));
@@ -52,7 +52,7 @@ float light_above_horizon(vec3 e, vec3 m) {
   if (dot(m.xy, most) < h) return 1.0;
   if (dot(m.xy, least) >= h) return 0.0;
   if (light.radius > 0.0) return disk_beside_line(h / (length(m.xy) * light.radius));
-  // Origin on the horizon's line: seen from there, the edge along the line spans no area.
+  // Areas are summed around this point of the horizon's line: seen from there, the edge along the line spans no area.
   const vec2 o = m.xy * (h / dot(m.xy, m.xy));
   float twice = 0.0;
   for (uint i = 0; i < light.corners; ++i) {

@@ -24,9 +24,9 @@ float width_of_node(MapFace face, Bounds receiver, ivec2 first, ivec2 last) {
   const vec2 depths = asked.view.far * depth_range(face.map, uvec2(first), uvec2(last));
   const vec2 shades = thresholds(receiver, face, first, last, asked.view.far);
   if (depths.x >= min(shades.y, asked.view.far)) return uintBitsToFloat(kInfinity);
-  // If the deepest surface is the receiver's own, or there is none, only the nearest is known to hide light.
+  // If the deepest surface is the receiver's own, or if there is none, only the nearest surface is known to hide light.
   const float depth = depths.y < shades.x ? depths.y : depths.x;
-  // Sideways, the height over the light's plane of a texel of row b is b times its depth.
+  // On a sideways face, the height over the light's plane of a texel of row b is b times its depth.
   const float height = face.axis == 2 ? depth : depth * (float(first.y) + 0.5) * face.texel.y;
   const vec2 width = light.upper - light.lower;
   return min(width.x, width.y) * max(asked.e.z / height - 1.0, 0.0);

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Search for a receiver's kernel (Guennebaud, Barthe and Paulin 2006): the kernel's nearest depth gives a narrower
-// kernel, with a nearest depth of its own, until the kernel no longer changes. Where its deepest texel, too, is in
+// kernel, with a nearest depth of its own, until the kernel no longer changes. If even the kernel's deepest texel is in
 // front of the receiver, all of the light is hidden. Included after group_kernel.glsl, with PYRAMID_BINDING.
 #include "maps/backprojection/thresholds.glsl"
 #include "maps/products/depth_pyramid.glsl"
 
 const int kSearchRounds = 4;
-// Smallest fraction of the receiver's height by which a point is below the receiver; nearer points are projected to the
-// largest distance: a quotient by this fraction is right to 2^-24 of its thousand.
+// Least distance of a projected point below the receiver, as a fraction of the receiver's height; points with a smaller
+// distance are projected with this one. A quotient by this fraction is at most a thousand, with an error of 2^-24 of
+// that.
 const float kLeastRise = 1e-3;
 
-// Returns whether the receiver is behind all surfaces in a kernel's texels. Bounds for blocks_light over the kernel: of
-// the receiver's plane, whose depth h / (m . c) is least where m . c is largest, at a corner, and of the bias there.
+// Returns whether the receiver is behind all surfaces in a kernel's texels. Uses bounds for blocks_light over the
+// kernel: the depth h / (m . c) of the receiver's plane is least where m . c is largest, at a corner; the bias has its
+// own bound.
 bool behind_all(MapFace face, Kernel kernel, float deepest) {
   const vec2 lower = face.lower + (vec2(kernel.first) + 0.5) * face.texel;
   const vec2 upper = face.lower + (vec2(kernel.last) + 0.5) * face.texel;
@@ -30,10 +32,10 @@ bool behind_all(MapFace face, Kernel kernel, float deepest) {
 }
 
 // Returns the narrowed kernel. `near`: the nearest depth of the whole map, on return that of the kernel; `lower`,
-// `upper`, `padding`: as for kernel_on. `begins`: a texel's occluder extends up to this fraction of its height, 1 if it
-// is all there. `umbra`: whether a kernel that hides all of the light ends the search. `beside`: texels take the depth
-// of others up to `beside` to their lower left (also from beside the kernel, for a texel to the upper right of it: a
-// narrower kernel has to allow for these).
+// `upper`, `padding`: as for kernel_on. `begins`: fraction of a texel's height down to which its occluder extends; 1 if
+// the whole occluder is at this height. `umbra`: whether a kernel that hides all of the light ends the search.
+// `beside`: a texel takes the depths of texels up to `beside` to its lower left, even if these are outside the kernel:
+// a narrower kernel has to allow for them.
 Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, float begins, int padding, bool umbra, int beside) {
   Kernel kernel = kernel_on(face, lookup.size, asked.e, lower, upper, begins * near, padding);
   for (int round = 0; round < kSearchRounds && !is_empty(kernel); ++round) {
@@ -41,7 +43,7 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, flo
     if (range.x >= 1.0) return kNoKernel;
     const ivec2 first = max(kernel.first - beside, ivec2(0));
     const float depth = asked.view.far * (beside > 0 ? depth_range(face.map, uvec2(first), uvec2(kernel.last)).x : range.x);
-    // Sideways, the height over the light's plane of a texel of row b is b times its depth.
+    // On a sideways face, the height over the light's plane of a texel of row b is b times its depth.
     const float height = face.axis == 2 ? depth : depth * (float(first.y) + 0.5) * face.texel.y;
     if (umbra && face.axis == 2 && asked.side.face_count == 1 && kernel.whole && lookup.depth_use == kDepthFirst &&
         behind_all(face, kernel, range.y * asked.view.far)) {
@@ -60,15 +62,16 @@ Kernel search_kernel(MapFace face, vec2 lower, vec2 upper, inout float near, flo
 
 // Returns the rectangle lower ... upper on the light's plane that bounds the projections, from the receiver, of texels
 // first ... last of a sideways face at depths depths.x ... depths.y, with a margin of one texel on every side. A part
-// of a pyramid above the light's plane and below the receiver projects within its corners' projections; of a part that
-// extends to the receiver's height, only the side of the receiver is known, and that its highest point projects
-// nearest.
+// of a pyramid above the light's plane and below the receiver projects within its corners' projections. Of a part that
+// extends to the receiver's height, only two facts are known: on which side of the receiver it projects, and that its
+// point nearest to the light's plane projects nearest to the receiver.
 void seen_sideways(MapFace face, ivec2 first, ivec2 last, vec2 depths, out vec2 lower, out vec2 upper) {
   const vec2 from = face.lower + vec2(first - 1) * face.texel, to = face.lower + vec2(last + 2) * face.texel;
-  vec2 low = vec2(1e30), high = vec2(-1e30);  // bounds of the part, relative to the receiver
+  vec2 low = vec2(1e30), high = vec2(-1e30);  // bounds of the texels' part of space, relative to the receiver
   lower = low;
   upper = high;
-  float least = 1e30, nearest_rise = 1.0;  // ratio of the projection's distance to the part's own
+  float least = 1e30, nearest_rise = 1.0;  // least ratio of a projection's distance to the point's own distance, from
+                                           // the receiver; least rise
   for (int k = 0; k < 8; ++k) {
     const vec3 corner = vec3((k & 1) == 0 ? from.x : to.x, (k & 2) == 0 ? from.y : to.y, 1.0);
     const vec3 q = from_face(face, corner) * ((k & 4) == 0 ? depths.x : depths.y);
@@ -86,10 +89,10 @@ void seen_sideways(MapFace face, ivec2 first, ivec2 last, vec2 depths, out vec2 
   upper = mix(asked.e.xy + high * least, vec2(1e30), greaterThan(high, vec2(0.0)));
 }
 
-// Returns true if none of the texels first ... last of a face, in `layers` layers, on which a tile's results depend, is
-// near enough to the light to shade the receiver, or if all of them, at their nearest depth, project beside the light.
-// `projected`: the area hidden by a texel is no wider than the texel. Otherwise texels that can hide light are at
-// depths.x ... depths.y.
+// Returns whether no texel first ... last of a face, in `layers` layers, hides light: because none is near enough to
+// the light to shade the receiver, or because all of them, at their nearest depth, project outside the light. A tile's
+// results depend on these texels. `projected`: the area hidden by a texel is no wider than the texel. If the result is
+// false, texels that can hide light are at depths.x ... depths.y.
 bool none_hides(MapFace face, ivec2 first, ivec2 last, uint layers, bool projected, out vec2 depths) {
   first = max(first, ivec2(0));
   last = min(last, ivec2(lookup.size) - 1);

@@ -88,12 +88,12 @@ double between(const Level& coarse, const ObjectPixel& at, const Node& node, dou
       weights += weight;
     }
   }
-  return sum / weights;  // the node's own parent is in the same square, less than `spacing` away
+  return sum / weights;  // weights > 0: the node's own parent is in the same square, less than `spacing` away
 }
 
 class Subsampled final : public visibility::Method, public SeesScene {
  public:
-  /// With `widths` null, pixels are chosen by a grid.
+  /// If `widths` is null, pixels are chosen by a grid.
   Subsampled(std::unique_ptr<visibility::Method> method, std::unique_ptr<visibility::Method> widths, std::uint32_t step)
       : method_(std::move(method)), widths_(std::move(widths)), step_(step), description_(method_->description()) {
     description_.output = visibility::Output::scalar;  // filled-in pixels have no masks
@@ -136,7 +136,7 @@ class Subsampled final : public visibility::Method, public SeesScene {
   [[nodiscard]] std::vector<std::uint32_t> steps();
   /// Makes the list of pixels that the method evaluates.
   void choose_pixels();
-  /// Adds a pixel to this list.
+  /// Adds a pixel to the list of pixels that the method evaluates.
   void choose(std::uint32_t pixel);
 
   std::unique_ptr<visibility::Method> method_, widths_;
@@ -282,14 +282,14 @@ void fill_in(std::span<KnownPixel> pixels, std::uint32_t width) {
                       Node{static_cast<double>(pixel.v), static_cast<double>(x), static_cast<double>(y), pixel.known});
   }
   if (known == 0 || known == levels[0].size()) return;
-  // Up to the level where each object is one pixel.
+  // Levels are built up to the one on which each object is one pixel.
   while (levels.back().size() > 1 && levels.size() < 21) levels.push_back(pulled(levels.back()));
   for (std::size_t level = levels.size() - 1; level-- > 0;) {
     const double side = std::ldexp(1.0, static_cast<int>(level));
     for (auto& [key, node] : levels[level]) {
       if (node.known) continue;
       const ObjectPixel at = pixel_of(key);
-      // The grid's own pixels are the first ones in their squares.
+      // An unknown node represents the first pixel of its square, as the grid's own pixels do.
       node.x = side * at.x;
       node.y = side * at.y;
       node.v = between(levels[level + 1], at, node, 2 * side);

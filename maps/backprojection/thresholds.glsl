@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Bounds over a rectangle of texels and a group of receivers. Depth thresholds x and y: a depth nearer to the light
-// than x shades all receivers of the group, a depth at y or farther shades none; and a test for texels seen beside the
-// light. The bounds are those of blocks_light (taps.glsl) for a single texel, with a margin for rounding, so that a
-// decision by bounds agrees with decisions for each texel (Yang et al. 2009, equation 3, here with each texel's own
-// depth of the receiver's plane).
+// than x shades all receivers of the group, a depth at y or farther shades none; and a test for texels that project
+// outside the light. The bounds are those of blocks_light (taps.glsl) for a single texel, with a margin for rounding,
+// so that a decision by bounds agrees with decisions for each texel (Yang et al. 2009, equation 3, here with each
+// texel's own depth of the receiver's plane).
 
 // Bounds of the receivers of a group, in a face's coordinates.
 struct Bounds {
@@ -62,8 +62,8 @@ vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far)
   const vec2 from = face.lower + (vec2(lower) + 0.5) * face.texel, to = face.lower + (vec2(upper) + 0.5) * face.texel;
   vec2 limit = vec2(group.z_low, group.z_high);
   if (face.axis != 2) limit = vec2(group.z_low / to.y, group.z_high / max(from.y, 0.25 * face.texel.y));
-  // Shadow that begins at or before another surface begins no nearer than this surface; pyramids have no information
-  // about the other surface.
+  // Unless depth_use is kDepthFirst, shadow begins no nearer than the nearest surface, at a depth that depends on the
+  // surface behind it, of which pyramids have no information.
   const bool nearest_alone = lookup.depth_use == kDepthFirst;
   const vec2 forgiven = (nearest_alone ? lookup.bias : 0.0) * max(face.texel.x, face.texel.y) * limit;
   vec2 plane = limit, slope = vec2(0.0);
@@ -85,7 +85,7 @@ vec2 thresholds(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float far)
   return min(vec2(all ? plane.x - taken.y - slack : -1e30, plane.y - taken.x + slack), far);
 }
 
-// Returns whether all receivers of the group see texels lower ... upper, at depths of at least `near`, beside the
+// Returns whether all receivers of the group see texels lower ... upper, at depths of at least `near`, outside the
 // light's bounding rectangle. Same criterion as kernel_on (kernel.glsl), on a face parallel to the light; with a margin
 // of one texel on every side, for texels that rounding moves to the light's border.
 bool all_beside_light(Bounds group, MapFace face, ivec2 lower, ivec2 upper, float near, vec2 light_lower, vec2 light_upper) {

@@ -5,13 +5,14 @@
 // over this surface. A view sample sums the splats that reach it. Splats are B-splines, so that those of a whole
 // surface add up to 1.
 
-layout(constant_id = 0) const uint kDegree = 1;  // of a splat along each axis: 0, one texel wide; 1, two; 2, three
+layout(constant_id = 0) const uint kDegree = 1;  // degree of a splat along each axis: 0, one texel wide; 1, two; 2,
+                                                 // three
 
 // Positions in a texel are counted in 64ths, so that weights are integers with the same sum everywhere.
 const int kParts = 64;
 
-// Returns the weights of the texels before, at and behind a position's own texel along an axis, `at` 64ths of a texel
-// beyond the texel's centre.
+// Returns the weights along an axis of the texels before, at and behind the own texel of a position, which is `at`
+// 64ths of a texel beyond this texel's centre.
 ivec3 weights(int at) {
   if (kDegree == 0) return ivec3(0, 1, 0);
   if (kDegree == 1) return ivec3(max(-at, 0), kParts - abs(at), max(at, 0));
@@ -20,8 +21,8 @@ ivec3 weights(int at) {
 }
 int whole() { return kDegree == 0 ? 1 : kDegree == 1 ? kParts : 2 * kParts * kParts; }
 
-// Returns whether the texel's light hits the receiver's surface, neither before nor behind it. Objects that cast no
-// shadow are not in the map: light hits them even if it continues.
+// Returns whether the texel's light hits the receiver's surface, not a surface in front of or behind it. Objects that
+// cast no shadow are not in the map: light hits them even if it continues.
 bool lands(Tap tap, vec3 d, vec3 m, uint beside) {
   const bool is_drawn = receiver_plane != 0xffffffffu;
   PlaneDepth plane = PlaneDepth(tap.along, lookup.bias * tap.texel * tap.along);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scherzer, Jeschke and Wimmer 2007, "Pixel-correct shadow maps with temporal reprojection and shadow test confidence",
 // as described in the course notes of Eisemann et al. (2009, section 3.2.6): each frame has a map with displaced
-// texels, and V of a pixel is mixed from this frame's V and the V stored before, by the confidence 1 - 2 max |position
-// - texel's centre|. The V stored before is found at the pixel's place in the picture before, unless another surface is
-// seen there. Departure: history=N makes N frames of each picture, as of a still camera, which depend on no other
-// picture.
+// texels, and V of a pixel is mixed from this frame's V and the stored V, by the confidence 1 - 2 max |position -
+// texel's centre|. The stored V is that of the pixel's place in the previous picture, unless another surface is seen
+// there. Departure: history=N makes N frames of each picture, as for a still camera; these depend on no other picture.
 
 #include "maps/filters/history.hpp"
 
@@ -91,10 +90,10 @@ class History final : public visibility::Method, public visibility::RemembersFra
   const visibility::ViewSamples* samples_ = nullptr;
   visibility::FrameMemory* memory_ = nullptr;
   std::uint64_t reprojected_ = 0;
-  std::vector<float> mixed_;  ///< for the tile last evaluated
+  std::vector<float> mixed_;  ///< V of the tile last evaluated
 
   [[nodiscard]] visibility::FrameMemory::Key key() const { return {light_->index, light_->piece}; }
-  /// Returns V of the tile in the picture before; NaN where it does not show the surface.
+  /// Returns V of the tile in the previous picture; NaN at pixels whose surface that picture does not show.
   [[nodiscard]] std::vector<float> before(const visibility::Tile& tile);
   void keep(const visibility::Tile& tile);
 };
@@ -178,7 +177,8 @@ void History::keep(const visibility::Tile& tile) {
 
 float reprojected(const visibility::KeptPicture& before, const visibility::ViewSamples& samples, std::size_t pixel) {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
-  // Surfaces whose depths differ by less are one: rounding, and a pixel's bend of a curved surface.
+  // Surfaces whose depths differ by less count as one: this allows for rounding, and for a surface curved within a
+  // pixel.
   constexpr double kSameDepth = 0x1p-10;
   const visibility::PinholeCamera& camera = before.samples.camera;
   const glm::dvec3 p(samples.p[pixel]), n(samples.n[pixel]), d = p - camera.eye;
@@ -196,7 +196,7 @@ float reprojected(const visibility::KeptPicture& before, const visibility::ViewS
       const std::size_t there = static_cast<std::size_t>(row) * before.samples.width + static_cast<std::size_t>(column);
       const float visibility = before.visibility[there];
       if (before.samples.triangle[there] == visibility::ViewSamples::kBackground || std::isnan(visibility)) continue;
-      // The depth at which the pixel there would see the plane of this surface.
+      // Ratio of the depths of this surface's plane and of the surface shown, at that pixel of the previous picture.
       const glm::dvec3 seen = glm::dvec3(before.samples.p[there]) - camera.eye;
       const double on_plane = glm::dot(n, d) / glm::dot(n, seen);
       if (!(std::abs(on_plane - 1) < kSameDepth)) continue;

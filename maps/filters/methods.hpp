@@ -20,13 +20,14 @@ std::unique_ptr<visibility::Method> make_silhouette_map(const render::Device& de
                                                         const visibility::MethodOptions& options);
 visibility::MethodDescription silhouette_map_description();
 
-/// Zhang 1998: the light's texels, splatted onto the surfaces that they light. docs/forward-map.md.
+/// Makes `forward-map` (Zhang 1998): the light's texels, splatted onto the surfaces that they light.
+/// docs/forward-map.md.
 std::unique_ptr<visibility::Method> make_forward_map(const render::Device& device,
                                                      const visibility::MethodOptions& options);
 visibility::MethodDescription forward_map_description();
 
-/// Reeves, Salesin, Cook 1987: the share of a fixed window's texels that do not shade the receiver, in one map from the
-/// light's centre. docs/pcf.md.
+/// Makes `pcf` (Reeves, Salesin, Cook 1987): the fraction of a fixed window's texels that do not shade the receiver, in
+/// one map from the light's centre. docs/pcf.md.
 std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const visibility::MethodOptions& options);
 visibility::MethodDescription pcf_description();
 

@@ -27,7 +27,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   float v = 1.0;
   for (uint k = 0; k < planes.count && v > 0.0; ++k) {
     const float plane = planes.plane[s][k];
-    // A slice that ends below the receiver also holds surfaces above or below, beside the receiver: skipped.
+    // A slice that ends below the receiver is skipped: next to the receiver, it also holds surfaces above or below it.
     if (!(plane < height)) break;
     const Box box = box_through(view, d, frame.half_box, max(plane, smallest));
     v *= 1.0 - mean_over(k, box, 0.0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Multiplies the visible fractions of filtered slices: Eisemann and Décoret 2006, "Plausible image based soft shadows
 // using occlusion textures" (Eisemann et al. 2009, section 5.2.5). Departures: surfaces are sorted into slices by one
-// raster pass from the light's centre, and box means come from summed areas in integers unless `filter` selects another
-// direction of filtering.
+// raster pass from the light's centre, and box means come from summed areas in integers unless the option `filter`
+// selects another scheme.
 
 #include "maps/filters/methods.hpp"
 

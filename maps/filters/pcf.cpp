@@ -126,8 +126,8 @@ std::unique_ptr<visibility::Method> make_pcf(const render::Device& device, const
     recipe.look_up = shaders::kPcfIdsComp;
     recipe.products.push_back(std::make_unique<NearestIds>(device, parsed[kRasteriser], IdsOf::objects));
   }
-  // The window extends half its texels beside a receiver's direction. The width of a texel depends on the extent of the
-  // window of receivers, which is at most ±kWidestTangent.
+  // The window extends half its texels to either side of a receiver's direction. The width of a texel depends on the
+  // extent of the window of receivers, which is at most ±kWidestTangent.
   const std::uint32_t reach = push.window / 2 + (push.weights == gpu::kBilinear ? 1 : 0);  // in whole texels
   const double beside = 2 * kWidestTangent * reach / parsed[kMapSize];
   recipe.beside = [beside](const visibility::Light& /*light*/, const LightBasis& /*basis*/) {

@@ -58,7 +58,7 @@ float weight_of(vec2 beside) {
 }
 
 // Returns the result of taps spread over the disk in the window (Uralsky 2005), rotated by another angle at every
-// receiver; the outermost taps first, and with `stages` of 2 no others if these agree.
+// receiver. The outermost taps come first; with `stages` of 2, the others are left out if these agree.
 float spread_taps(LightView view, PcfAsking asking, vec3 d) {
   uint bits = floatBitsToUint(d.x) * 0x9e3779b1u ^ floatBitsToUint(d.y) * 0x85ebca77u ^ floatBitsToUint(d.z) * 0xc2b2ae3du;
   bits = (bits ^ bits >> 15) * 0x2c1b3c6du;
@@ -93,7 +93,7 @@ float of_kept(LightView view, PcfAsking asking, vec2 first) {
         least = min(least, depth);
         greatest = max(greatest, depth);
       } else {
-        // Two depths that are equally near to the middle: the lesser one counts.
+        // If two depths are equally near to the middle, the lesser one counts.
         const float middle = 0.5 * (least + greatest);
         const float beside = abs(depth - middle) + (depth > middle ? view.far / 1048576.0 : 0.0);
         if (beside < off) at[2] = offset;

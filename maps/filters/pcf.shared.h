@@ -19,7 +19,8 @@ struct PcfPush {
   uint stages;     // stages of taps; 2: the outermost taps decide if they agree
   uint test;       // kByDepth ...
   uint keep;       // number of texels of extreme depths in the window that are compared; 0: all
-  float softness;  // kByMeanDepth: distance behind the mean depth at which the receiver is dark, over its depth
+  float softness;  // kByMeanDepth: distance behind the mean depth at which the receiver is dark, as a fraction of its
+                   // depth
 };
 
 #ifdef __cplusplus

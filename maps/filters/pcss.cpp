@@ -34,7 +34,7 @@ constexpr visibility::IntegerOption kBlockerSamples{"blockerSamples", 1, 1024, 6
 constexpr visibility::IntegerOption kFilterSamples{"filterSamples", 1, 1024, 64, "taps of the filter"};
 
 /// Light points of both kinds of taps: x and y in the light's basis and a weight: 1, or the texture's luminance there
-/// over its maximum. With a constant texture V has the same bytes as without a texture.
+/// divided by its maximum. With a constant texture V has the same bytes as without a texture.
 class PcssTaps final : public MapProduct {
  public:
   PcssTaps(const render::Device& device, std::uint32_t blocker, std::uint32_t filter)

@@ -35,8 +35,8 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     }
   }
 
-  // Steps 2 and 3: all blockers are replaced by one plane at their mean height; fraction of the light seen past this
-  // plane. A light point below the receiver's horizon is hidden, independent of the map.
+  // Steps 2 and 3: all blockers are replaced by one plane at their mean height, and V is the fraction of the light seen
+  // past this plane. A light point below the receiver's horizon is hidden, independent of the map.
   const float blocker = blockers == 0 ? height : sum / float(blockers);
   float visible = 0.0, total = 0.0;  // integers without a texture
   for (uint k = 0; k < own.filter_samples; ++k) {

@@ -6,14 +6,14 @@
 /// Repair of each cause of error of the methods that filter one map: MethodDescription::repairs.
 namespace penumbra::maps {
 
-/// Repairs of shadow-map and pcss.
+/// Returns the repairs of shadow-map and pcss.
 visibility::ErrorRepairs filter_repairs(const visibility::MethodDescription& method,
                                         const visibility::MethodOptions& given);
 visibility::ErrorRepairs vssm_repairs(const visibility::MethodDescription& method,
                                       const visibility::MethodOptions& given);
 visibility::ErrorRepairs pcf_repairs(const visibility::MethodDescription& method,
                                      const visibility::MethodOptions& given);
-/// Repairs of convolution and occlusion-textures.
+/// Returns the repairs of convolution and occlusion-textures.
 visibility::ErrorRepairs slice_repairs(const visibility::MethodDescription& method,
                                        const visibility::MethodOptions& given);
 

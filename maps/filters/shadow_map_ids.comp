@@ -10,8 +10,8 @@ layout(scalar, binding = 5) readonly buffer Numbers { uint number_of[]; };  // n
 layout(constant_id = 0) const uint kByObject = 0;
 
 // Hourcade and Nicolas 1985: a surface is lit if the map has the surface's number, whatever the depth. Here numbers are
-// those of planes, so that the triangles of one polygon share one, or of objects; surfaces that cast no shadow are in
-// no map: their depth is compared.
+// those of planes, so that the triangles of one polygon share a number, or those of objects. Surfaces that cast no
+// shadow are in no map: their depth is compared instead.
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (receiver_plane == kNoId) return light_point_is_seen(view, 0, d, m) ? 1.0 : 0.0;
   if (!(dot(m, d) > 0.0)) return 0.0;

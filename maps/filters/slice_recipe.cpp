@@ -35,7 +35,7 @@ MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescripti
   recipe.products.push_back(std::move(prefilter));
   recipe.products.push_back(
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
-  // Planes no nearer to the light than the radius of a disk of its area: the extent of pcss's windows.
+  // Planes are assumed to be no nearer to the light than the radius of the disk of its area, as for pcss's windows.
   recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
     return half_extent(light, basis) / half_width(light);
   };

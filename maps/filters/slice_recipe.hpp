@@ -14,8 +14,8 @@ inline constexpr visibility::ChoiceOption kSliceFilter{
     PrefilterKind::table,
     "table from which means over windows are read: summed areas in integers, mip levels, overlapping squares"};
 
-/// Returns the recipe: light-space slices, each filtered by the light seen through its plane, and their product
-/// (occlusion_textures.comp).
+/// Returns the recipe: light-space slices, each filtered by the light seen through its plane, and the product of their
+/// visible fractions (occlusion_textures.comp).
 MapRecipe slice_recipe(const render::Device& device, visibility::MethodDescription description,
                        const SliceOptions& slices, PrefilterKind filter);
 

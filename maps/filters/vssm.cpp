@@ -98,7 +98,7 @@ constexpr auto kSlope = visibility::flag_option(
     "slope", false,
     "vsm, lvsm: adds the variance of depth within a texel, from the surface's slope, to each texel's square");
 
-/// Says that maps are smaller than the default, which this device cannot filter.
+/// Returns a warning if maps are smaller than the default because this device cannot filter maps of the default size.
 std::optional<std::string> vssm_warning(const visibility::MethodOptions& options,
                                         const std::map<std::string, std::uint64_t>& counters) {
   if (!counters.contains(kReducedMaps)) return std::nullopt;
@@ -108,7 +108,7 @@ std::optional<std::string> vssm_warning(const visibility::MethodOptions& options
       options.at(kMapSize.name()), kMapSize.otherwise);
 }
 
-/// Returns the number of maps that a fit asks for on one side of a light: in a window, or at most, in a hemicube.
+/// Return the number of maps of a fit on one side of a light: with a window, and at most, with a hemicube.
 std::uint32_t fewest_faces(const ViewFit& fit) {
   if (fit.fit == Fit::tiles) return fit.tiles;
   return fit.projection == Projection::cube || fit.fit == Fit::faces ? 5 : fit.slices();
@@ -155,7 +155,7 @@ namespace {
 std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, float exponent, float offset) {
   std::vector<PrefilterFunction> functions;
   const PrefilterFunction height{};
-  // 16 binary digits where an exponential is least, exp(−c): total number of digits. (A float has 24.)
+  // Total number of digits that leaves 16 binary digits where an exponential is least, exp(−c). (A float has 24.)
   const auto digits = [&](double c) { return static_cast<std::uint32_t>(std::ceil(c * std::numbers::log2e)) + 16; };
   switch (moments) {
     case Moments::vsm:
@@ -182,8 +182,8 @@ std::vector<PrefilterFunction> functions(Moments moments, std::uint32_t count, f
         const auto step = static_cast<float>((2 * k + 1) * std::numbers::pi * gpu::fourier_span(count, offset));
         for (const std::uint32_t power : {gpu::kPlain, gpu::kTimesHeight}) {
           for (const std::uint32_t kind : {gpu::kSine, gpu::kCosine}) {
-            // 12 digits: one table each at 1024 texels a side; the truncation error of the series is 1 / (2 · 16 · π)
-            // in any case.
+            // With 12 digits, each function needs one table at 1024 texels a side; the truncation error of the series
+            // is 1 / (2 · 16 · π) in any case.
             functions.push_back({.kind = kind, .power = power, .a = step, .digits = 12});
           }
         }
@@ -220,7 +220,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
     model = gpu::kExpVariance;
     push.exponent /= 2;
   }
-  // A bound of 1 gives no information; a series and an exponential have no bound.
+  // Windows are cut where a bound of 1 gives no information; a series and an exponential have no bound.
   Subdivision subdivision = parsed[kSubdivision];
   if (subdivision == Subdivision::automatic) {
     const bool cuts_windows = model == gpu::kVariance && parsed[kFixedWindow] == 0;
@@ -229,7 +229,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
   const bool bounds = model == gpu::kVariance || model == gpu::kExpVariance;
   const std::uint32_t cuts = bounds && subdivision != Subdivision::none ? parsed[kCuts] : 0;
   // Windows on warped faces are cut for any moments. A series has up to 65 means a part: with three cuts, its loops
-  // would be more than the 65,535 iterations after which some drivers for processors end them.
+  // would have more than the 65,535 iterations after which some drivers for processors end loops.
   const std::uint32_t image_cuts = moments == Moments::csm ? std::min(parsed[kCuts], 2U) : parsed[kCuts];
   const auto offset = static_cast<float>(parsed[kOffset]);
   const std::uint32_t window = parsed[kFixedWindow];
@@ -242,7 +242,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
                                  std::bit_cast<std::uint32_t>(static_cast<float>(parsed[kDamping])),
                                  parsed[kLeakCut] == LeakCut::smooth ? 1U : 0U,
                                  parsed[kClassifier] == Classifier::farthest ? 1U : 0U, image_cuts}};
-  // An exponential subtracts nothing from a receiver's height.
+  // With an exponential, no bias is subtracted from a receiver's height.
   recipe.products.push_back(
       std::make_unique<ShadowDepths>(device, parsed[kDepth], moments == Moments::esm ? 0 : parsed[kBias]));
   auto nearest = std::make_unique<NearestCaster>(device);
@@ -252,7 +252,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
                          .slope = parsed[kSlope]};
   std::uint32_t size = parsed[kMapSize];
   if (!parsed.given(kMapSize)) {
-    // The number of maps depends on the light: where one window's means would not fit, there is room for a hemicube's.
+    // The number of maps depends on the light: if the means of one window do not fit, the size allows for a hemicube.
     const ViewFit fit = view_fit(recipe.description.options, parsed);
     const std::uint64_t most_bytes = device.limits().max_storage_buffer_range;
     if (size_that_fits(means, size, fewest_faces(fit), most_bytes) != size) {
@@ -270,7 +270,7 @@ std::unique_ptr<visibility::Method> make_vssm(const render::Device& device, cons
       std::make_unique<LightPattern>(device, std::initializer_list<std::uint32_t>{kHorizonSamples}));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::hsm));
   // Extent of the blocker search: see pcss. With a fixed filter width: see pcf.
-  const std::uint32_t taps_beside = window / 2;  // rounded down: the middle texel is none of them
+  const std::uint32_t taps_beside = window / 2;  // rounded down: the middle texel does not count
   const double beside = 2 * kWidestTangent * taps_beside / size;
   recipe.beside = [window, beside](const visibility::Light& light, const LightBasis& basis) {
     return window != 0 ? glm::dvec2(beside) : half_extent(light, basis) / half_width(light);

@@ -6,14 +6,16 @@
 #include "maps/products/prefilter.glsl"
 
 layout(constant_id = 2) const uint kModel = kVariance;
-layout(constant_id = 3) const uint kCuts = 0;  // largest number of times a window is cut in four; with bounds only
+layout(constant_id = 3) const uint kCuts = 0;  // largest number of times a window is cut in four; only for models with
+                                               // bounds
 layout(constant_id = 4) const uint kSubdivision = kUniform;
 layout(constant_id = 5) const uint kWindowTexels = 0;  // width of a fixed filter in texels; 0: the light's size
                                                        // determines the window
 layout(constant_id = 6) const float kOffset = 1.0;     // csm: shift of the step, in lobes
 layout(constant_id = 7) const float kDamping = 0.0;    // csm: rate at which the coefficients fall off
 layout(constant_id = 8) const uint kSmoothLeak = 0;    // 1: values above `leak` are stretched smoothly
-layout(constant_id = 9) const uint kFarthest = 0;      // esm: texel by texel wherever a texel is behind the receiver
+layout(constant_id = 9) const uint kFarthest = 0;      // esm, 1: texel by texel wherever a texel may be behind the
+                                                       // receiver
 layout(constant_id = 10) const uint kImageCuts = 0;    // with FITTED_FACES: largest number of times a window is cut in
                                                        // four because its image is no box
 
@@ -68,11 +70,11 @@ float height_of_texel(LightView view, uint face, uvec2 at, uint s) {
   return depth < 1.0 ? normalised_height(depth * view.far * height, nearest[s], frame.deepest[s]) : 1.0;
 }
 
-// Returns the exponential where it is below 1, texel by texel (Annen, Mertens et al. 2008, section 3.4); of a large
-// box, at some texels.
+// Returns the mean of the exponential, limited to 1 texel by texel (Annen, Mertens et al. 2008, section 3.4); for a
+// large box, at some of its texels.
 const uint kFallbackTaps = 16;  // along an axis
 float lit_texel_by_texel(LightView view, Box box, float t, uint s) {
-  if (!(box.inside > 0.0)) return 1.0;  // beside the map there is nothing
+  if (!(box.inside > 0.0)) return 1.0;  // outside the map there is no caster
   const vec2 first = floor(box.lower), extent = ceil(box.upper) - first;
   const uvec2 count = uvec2(min(extent, vec2(kFallbackTaps)));
   float sum = 0.0;
@@ -92,7 +94,7 @@ struct Asking {
   uint s;       // side of the light's plane
   float t;      // height, less the bias
   float kept;   // fraction of a height left by the bias
-  float slack;  // of kExpVariance: the height subtracted by the bias; of kExponential: what is subtracted for rounding
+  float slack;  // kExpVariance: the height subtracted by the bias; kExponential: the change of t for rounding
 };
 
 float normalised(Asking asking, float height) {
@@ -116,8 +118,8 @@ float plane_height(LightView view, Asking asking, uint face, vec2 place) {
   return h * across < own_height * facing ? normalised(asking, asking.kept * h / facing * across) : asking.t;
 }
 
-// Returns, for a part of a window without a valid bound, from some of its texels: the fraction not nearer than the
-// receiver's plane, and in `blocked` the sum of the other texels' heights, as a fraction.
+// Evaluates a part of a window without a valid bound at some of its texels. Returns the fraction not nearer than the
+// receiver's plane; `blocked` is the sum of the other texels' heights, divided by the number of all texels.
 const uint kPartTaps = 4;  // along an axis
 float lit_at_texels(LightView view, Asking asking, Box box, out float blocked) {
   blocked = 0.0;
@@ -140,14 +142,15 @@ float lit_at_texels(LightView view, Asking asking, Box box, out float blocked) {
   return lit * share + (1.0 - box.inside);
 }
 
-// Returns the least and the greatest height possible in a box, from the pyramid; on a sideways face heights are the
-// distance from the plane along its rows.
+// Returns the least and the greatest height possible in a box, from the pyramid. On a sideways face, a height is the
+// depth times the distance of the texel's row from the light's plane.
 vec2 heights_within(LightView view, Box box, uint s) {
   if (!(box.inside > 0.0)) return vec2(1.0);
   const uvec2 first = uvec2(box.lower), last = max(uvec2(ceil(box.upper)), first + 1) - 1;
   const vec2 depths = depth_range(box.face, first, last) * view.far;
 #ifdef FITTED_FACES
-  // Between the corners of a homography's box the height is between theirs: it is a quotient of linear functions.
+  // On a homography's face, the factor of a row's depths is a quotient of linear functions: within a box, it is between
+  // the factors at the corners.
   vec2 rows = vec2(1.0, 0.0);
   for (uint k = 0; k < 4; ++k) {
     const vec2 corner = vec2((k & 1) == 0 ? first.x : last.x, (k & 2) == 0 ? first.y : last.y);
@@ -163,7 +166,7 @@ vec2 heights_within(LightView view, Box box, uint s) {
 }
 
 // Returns the lit fraction of the window; if `search`, `blocked` is the sum of the heights, in t, of the texels that
-// are not lit, as a fraction.
+// are not lit, divided by the number of all texels.
 float lit_share(LightView view, Asking asking, Box box, float t, bool search, out float blocked) {
   // Lauritzen and McCool 2008: the layer that contains t has no information about heights outside the layer. With one
   // layer, its mean is the mean of t.
@@ -231,7 +234,7 @@ float lit_share(LightView view, Asking asking, Box box, float t, bool search, ou
 // Returns the fraction of a window in one part after `cut` cuts in four.
 float part_weight(uint cut) { return 1.0 / float(1u << (2 * cut)); }
 
-// Moves on to the largest part that begins where this one ends; of parts that are cut up to `most` times.
+// Moves to the largest part that begins where this one ends, among the parts made by up to `most` cuts.
 void next_part(inout uint at, inout uint cut, uint most) {
   const uint parts = 1u << (2 * most);
   at += parts >> (2 * cut);
@@ -261,17 +264,17 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
   }
   const vec2 ends = height_ends(nearest[s], frame.deepest[s]);
 
-  // Step 1: blockers in the light-receiver pyramid at the near plane, and their mean height. Steps 2 and 3: all
-  // blockers are replaced by one plane there: the fraction of the light seen past this plane. One loop over the parts
-  // of both windows.
+  // Step 1 finds the blockers in the light-receiver pyramid at the near plane, and their mean height. Steps 2 and 3
+  // replace all blockers by one plane at this height, and find the fraction of the light seen past this plane. One loop
+  // processes the parts of both windows.
   float z = min(max(nearest[s], frame.smallest_near), height), lit = 0.0, blockers = 0.0;
   bool search = kWindowTexels == 0;
   Window window = search ? window_through(view, d, frame.half_box, z) : window_of_texels(view, d, kWindowTexels);
   const uint most = kCuts > kImageCuts ? kCuts : kImageCuts, parts = 1u << (2 * most);
   uint at = 0, cut = 0;  // current part, in Morton order: index of its first smallest part, and its number of cuts
   for (;;) {
-    // Cuts down to the next part that needs a mean, in a loop of its own: a driver that computes both sides of a branch
-    // would compute a mean for each part on the path, too.
+    // Cuts down to the next part that needs a mean, in a separate loop: otherwise a driver that computes both sides of
+    // a branch would compute a mean for each part on the path, too.
     Image image;
     bool needs_mean = false, may_cut = false;
     while (at < parts && !needs_mean) {
@@ -281,7 +284,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
         ++cut;
         continue;
       }
-      // No texel of the part is nearer than the receiver: lit, without a mean.
+      // If no texel of the part is nearer than the receiver, the part is lit and needs no mean.
       const bool open = kModel <= kExpVariance && heights_within(view, image.box, s).x >= asking.t;
       may_cut = cut < kCuts && wider;
       if (!open && may_cut && kSubdivision == kUniform) {

@@ -45,7 +45,8 @@ glm::dvec2 aliasing_error(const FittedFace& face, const SeenReceiver& receiver, 
                         glm::dot(moves.at(i), basis.n) * (receiver.side == 0 ? 1 : -1));
     texels.at(i) = face.moves(receiver.e, by) * static_cast<double>(size);
   }
-  // Texels for a step of one pixel: the columns of the inverse are pixels for a step of one texel.
+  // `texels` holds the texels moved by a step of one pixel; the columns of its inverse are the pixels moved by a step
+  // of one texel.
   const double determinant = texels[0].x * texels[1].y - texels[1].x * texels[0].y;
   const double width = std::hypot(texels[1].y, texels[0].y), height = std::hypot(texels[1].x, texels[0].x);
   return glm::dvec2(width, height) / std::max(std::abs(determinant), 1e-300);

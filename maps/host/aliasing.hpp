@@ -24,11 +24,11 @@ inline constexpr double kMostAliasing = 1e6;
 /// Returns whether a view sample faces away from the light's centre. Such a sample is dark without a map.
 bool faces_away(const visibility::ViewSamples& samples, std::size_t pixel, const LightBasis& basis);
 
-/// Larger m of each pixel, 0 where there is no look-up; and its counters: aliasingPixels, the number of pixels;
-/// undersampledPixels with m > 1; aliasingThousandths and aliasingWorstThousandths, sum and largest m in thousandths;
-/// outsidePixels, held by no face (there are none; they would be lit); and neededTexels, the sum over faces of size² ·
-/// (largest m along a) · (largest m along b): with as many texels no m is above 1. neededTexels divided by the map's
-/// texels is the storage factor of the course notes' figure 3.13.
+/// For each pixel the larger m of both axes, 0 where there is no look-up; and counters: aliasingPixels, the number of
+/// pixels with a look-up; undersampledPixels, those with m > 1; aliasingThousandths and aliasingWorstThousandths, the
+/// sum of m and the largest m, in thousandths; outsidePixels, held by no face (there are none; they would be lit); and
+/// neededTexels, the sum over faces of size² · (largest m along a) · (largest m along b): with as many texels no m is
+/// above 1. neededTexels divided by the map's texels is the storage factor of the course notes' figure 3.13.
 struct Aliasing {
   std::vector<float> errors;
   std::map<std::string, std::uint64_t> counters;

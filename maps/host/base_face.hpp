@@ -12,12 +12,12 @@
 
 namespace penumbra::maps {
 
-/// Axes of a face of a hemicube, as in taps.glsl; the first face is also a window's.
+/// Axes of a face of a hemicube, as in taps.glsl. A window has the axes of the first face.
 struct BaseFace {
   int axis;
   double sign;
 
-  [[nodiscard]] glm::dmat3 matrix() const {  // maps e to (a, b, w)
+  [[nodiscard]] glm::dmat3 matrix() const {  // maps a direction e = (x, y, |z|) to the face's (a, b, w)
     const glm::dvec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     const glm::dmat3 rows = axis == 2   ? glm::dmat3(x, y, z)
                             : axis == 0 ? glm::dmat3(y, z, sign * x)
@@ -41,8 +41,8 @@ struct PlaceBounds {
   }
 };
 
-/// Returns the matrix that maps (a' k, b' k, k) to the range 0 to 1 over `bounds`, with `margin` of the face on every
-/// side.
+/// Returns the matrix that maps homogeneous positions (a' k, b' k, k) in `bounds` to the range 0 to 1, with the
+/// fraction `margin` of the face left free on every side.
 inline glm::dmat3 to_unit(PlaceBounds bounds, double margin) {
   // A body seen edge-on has zero width: then float32's resolution of a tangent is used.
   const glm::dvec2 least = 0x1p-20 * (1.0 + glm::max(glm::abs(bounds.lower), glm::abs(bounds.upper)));

@@ -30,12 +30,12 @@ class CameraFaces {
   std::uint32_t fit(const render::Device& device, const Source& source, const FaceFitOptions& options,
                     gpu::LightView& view);
 
-  /// Takes these faces instead, sorted by side, for the same camera.
+  /// Uses the given faces, sorted by side, in place of fitted ones, for the same camera.
   std::uint32_t take(const render::Device& device, const Source& source, std::vector<FittedFace> faces,
                      std::uint32_t size, gpu::LightView& view);
 
-  /// Makes a paraboloid's circle for each side of the light's plane with maps in `view`, and writes their number to
-  /// `view` in the same form.
+  /// Makes a paraboloid's circle for each side of the light's plane with maps in `view`, and writes the number of
+  /// circles to `view`, as fit() does.
   std::uint32_t take_paraboloids(const render::Device& device, const LightBasis& basis, std::uint32_t size,
                                  std::uint32_t spare, gpu::LightView& view);
 

@@ -268,7 +268,7 @@ void CasterMaps::record_passing(render::Commands& commands, MapLayer layer, cons
   };
   all_->for_each_run([&](const visibility::AllTriangles::Run& run) {
     if (!run.casts_shadow) return;
-    passed_ += run.corners.size();  // those of the light's own body count, as in batches
+    passed_ += run.corners.size();  // casters of the light's own body are counted, too, as in batches
     if (run.emits == light_index) return;
     for (const std::array<glm::vec3, 3>& triangle : run.corners) {
       corners.insert(corners.end(), triangle.begin(), triangle.end());

@@ -32,8 +32,8 @@ struct FacePush {
 /// same buffers. A caster with holes (holes.hpp) is not drawn in its holes.
 class CasterMaps {
  public:
-  /// Makes a renderer of maps with `size` texels on a side. Throws ResourceError if the rasteriser's images cannot have
-  /// as many, and if OpenGL is requested but not available.
+  /// Makes a renderer of maps with `size` texels on a side. Throws ResourceError if the rasteriser's images cannot be
+  /// as large, and if OpenGL is requested but not available.
   CasterMaps(const render::Device& device, std::uint32_t size, Rasteriser rasteriser = Rasteriser::vulkan);
 
   /// Sets the polygon offset of the nearest surfaces for all following draws (CasterPush).
@@ -42,8 +42,9 @@ class CasterMaps {
     offset_units_ = units;
   }
   void upload(const visibility::SceneFloats& scene);
-  /// Draws these triangles in place of uploaded ones, each as it passes, by Vulkan; both must outlive all draws. Such
-  /// draws submit what is recorded, as often as the buffer is full, and add the times. Casters have no holes.
+  /// Draws the triangles of `all` in place of uploaded ones, in parts as `all` passes them, by Vulkan. `all` and
+  /// `times` must outlive all draws. Such a draw submits the recorded commands whenever its buffer is full, and adds
+  /// their times to `times`. Casters have no holes.
   void pass(const visibility::AllTriangles& all, visibility::PassTimes& times);
 
   /// Records the faces of one light point of the light with index `light_index` and copies them, one after the other,
@@ -51,21 +52,21 @@ class CasterMaps {
   void record(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis, std::int32_t light_index,
               const render::Buffer& maps, std::uint64_t first_face) const;
   /// Records the next layer (Everitt 2001, depth peeling): the nearest surface behind the layer whose faces begin at
-  /// `previous_face`; otherwise as record(). Empty texels are 1. Surfaces within a relative 2⁻²⁰ of the previous layer
-  /// belong to the previous layer: a surface present twice, in different triangles, differs by rounding.
+  /// `previous_face`; in all other respects like record(). Empty texels are 1. Surfaces within a relative 2⁻²⁰ of the
+  /// previous layer belong to the previous layer: a surface present twice, in different triangles, differs by rounding.
   void record_behind(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                      std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face,
                      std::uint64_t previous_face) const;
-  /// Record faces of any kind in the same form, on the device alone.
+  /// Overloads for faces of any kind; by Vulkan alone.
   void record(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
               const render::Buffer& maps, std::uint64_t first_face) const;
   void record_behind(render::Commands& commands, std::span<const FacePush> faces, std::int32_t light_index,
                      const render::Buffer& maps, std::uint64_t first_face, std::uint64_t previous_face) const;
-  /// Records the farthest surface of each texel; otherwise as record(). Empty texels are 0.
+  /// Records the farthest surface of each texel; in all other respects like record(). Empty texels are 0.
   void record_farthest(render::Commands& commands, const gpu::LightView& view, const LightBasis& basis,
                        std::int32_t light_index, const render::Buffer& maps, std::uint64_t first_face) const;
 
-  /// Returns the number of uploaded casters, or of those that passed in the last draw.
+  /// Returns the number of uploaded casters, or, after pass(), of those that passed in the last draw.
   [[nodiscard]] std::uint64_t caster_count() const { return all_ != nullptr ? passed_ : emits_.size(); }
   [[nodiscard]] bool have_holes() const { return std::ranges::any_of(batches_, &Batch::holes); }
   [[nodiscard]] std::uint64_t memory_bytes() const;
@@ -73,7 +74,7 @@ class CasterMaps {
  private:
   /// Triangles that fit into one storage buffer of the rasteriser.
   struct Batch {
-    std::optional<render::Buffer> corners;  ///< for Vulkan; OpenGlMaps has its own
+    std::optional<render::Buffer> corners;  ///< for Vulkan; OpenGlMaps has separate ones
     std::optional<render::Buffer> places;   ///< of casters with holes, for Vulkan
     std::uint32_t first, count;
     bool holes;
@@ -118,9 +119,9 @@ class CasterMaps {
   std::optional<render::Buffer> surfaces_;  // HoleSurfaces::words
   std::unique_ptr<OpenGlMaps> opengl_;      // used with OpenGL
   std::vector<Batch> batches_;
-  std::vector<std::int32_t> emits_;  // of each uploaded caster, ascending in a batch: a light's body is one range
+  std::vector<std::int32_t> emits_;  // for each uploaded caster, ascending in a batch: a light's body is one range
   const visibility::AllTriangles* all_ = nullptr;  // drawn in place of batches
-  visibility::PassTimes* times_ = nullptr;         // of draws of all_
+  visibility::PassTimes* times_ = nullptr;         // times of draws of all_
   mutable std::unique_ptr<render::Buffer> passing_;
   mutable std::uint64_t passed_ = 0;
 };
@@ -131,7 +132,7 @@ std::uint64_t faces_per_buffer(const render::Device& device, std::uint32_t size)
 /// Throws ResourceError, with the largest possible size, if `faces` do not fit into one storage buffer.
 void check_faces_fit(const render::Device& device, std::uint32_t size, std::uint32_t faces);
 
-/// Number of faces in one recording: each is two passes, and Commands times 256.
+/// Number of faces in one recording: each face takes two passes, and Commands times 256 passes.
 inline constexpr std::uint32_t kFacesPerSubmission = 96;
 
 }  // namespace penumbra::maps

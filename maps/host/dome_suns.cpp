@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Extends methods of maps to domes: the sky as suns of equal power (Debevec 2005). Departures: parts of the sky consist
-// of the dome's light samples, which have equal power, not of texels; and a sun is as wide as its part, not one
-// direction, so that methods with penumbrae have few steps.
+// of the dome's light samples, which have equal power, not of texels; and a sun is a disk as wide as its part, not a
+// single direction, so that shadows of methods with penumbrae have few steps.
 
 #include "maps/host/dome_suns.hpp"
 
@@ -128,7 +128,7 @@ class DomeOfSuns final : public visibility::Method,
   Tile tile_;
   std::size_t pixels_ = 0;  // number of pixels of the tile
   std::vector<std::uint32_t> masks_, part_masks_;
-  std::vector<double> light_, whole_;  // of each pixel: arriving light, and unoccluded light
+  std::vector<double> light_, whole_;  // for each pixel: arriving light, and unoccluded light
   std::vector<float> part_;
   std::map<std::string, std::uint64_t> counters_;
 };

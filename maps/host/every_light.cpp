@@ -72,7 +72,7 @@ class EveryLight final : public visibility::Method,
   visibility::MethodDescription description_;
   const SceneFloats* scene_ = nullptr;
   const visibility::AllTriangles* all_ = nullptr;  // null: the scene has all triangles
-  std::optional<SceneFloats> drawn_;               // with holes as casters, if any
+  std::optional<SceneFloats> drawn_;               // scene with holes as casters, if it has any
   const SceneFloats* shown_ = nullptr;             // scene that the method has
   const Light* light_ = nullptr;                   // light given by the host
   Light own_;                                      // light given to the method, where it differs

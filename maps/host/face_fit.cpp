@@ -34,7 +34,7 @@ glm::dmat3 to_unit_across(const PlaceBounds& bounds, double margin) {
   return matrix;
 }
 
-/// Scales the face so that depths along the axis are at most k in all of the face: the near plane clips k.
+/// Scales the face's matrix so that k is at least the depth along the axis in all of the face: the near plane clips k.
 void normalise(FittedFace& face) {
   double most = 0;
   for (const double a : {0.0, 1.0}) {
@@ -79,7 +79,7 @@ class FaceFitter {
 
  private:
   static constexpr std::size_t kSeenPerPoint = 5;
-  /// Directions e of the receivers on the side, and of look-ups' taps beside them.
+  /// Directions e of the receivers on this side of the light's plane, and of the look-ups' taps around them.
   struct Seen {
     std::vector<glm::dvec3> points;
     double near = kFarAway, far = 0;
@@ -144,8 +144,8 @@ class FaceFitter {
     for (const glm::dvec3& e : all.points) bounds.add(glm::dvec2(e) / e.z);
     const glm::dvec2 widest = glm::max(-bounds.lower, bounds.upper);
     const bool window = std::max(widest.x, widest.y) <= kWidestTangent;
-    // Faces of a hemicube are whole if taps continue on the next face, and if the body is a frustum's, whose polygons
-    // may pass through a face without a corner there.
+    // On a hemicube, whole faces are used if taps continue on the next face, or if the body is a frustum's: its
+    // polygons may pass through a face without a corner there.
     const bool whole = beside_ != glm::dvec2(0) || options_.spare > 1 || options_.fit.body == ViewBody::frustum;
     for (const BaseFace& base : std::span(kHemicube).first(window ? 1 : kHemicube.size())) {
       FittedFace face{.side = side_, .axis = base.axis, .along = base.along(), .from = from, .to = to};
@@ -196,8 +196,8 @@ class FaceFitter {
             .perspective = perspective};
   }
 
-  /// Adds a face for each face of the frustum through which rays to receivers leave it. Where a perspective is too
-  /// strong for float32, an even face of all points follows.
+  /// Adds a face for each face of the frustum through which rays to receivers leave it. If a perspective is too strong
+  /// for float32, the face `even`, fitted to all points without a perspective, is added last.
   void add_frustum_faces(const FittedFace& even, const BaseFace& base, const SeenBody& body,
                          std::vector<FittedFace>& faces) const {
     const std::vector<FrustumFace> frustum = frustum_faces(body);
@@ -212,7 +212,7 @@ class FaceFitter {
     }
     for (std::size_t i = 0; i < frustum.size(); ++i) {
       if (options_.fit.body == ViewBody::frustum) {
-        // Receivers' polygons may pass through a face without a corner there.
+        // Receivers' polygons may pass through a face without a corner there: the whole face is used.
         const glm::dmat3 directions = glm::inverse(frustum[i].matrix);
         parts[i].clear();
         for (const double x : {-1.0, 1.0}) {
@@ -251,7 +251,8 @@ class FaceFitter {
   struct Tile {
     std::uint32_t level = 0;
     glm::dvec2 first{0};  ///< in squares of this level
-    /// Receivers in the square, and the number of refinements that m requires for each, counted from the whole face.
+    /// Position of each receiver in the square, and the number of cuts of the whole face that its aliasing error
+    /// requires.
     std::vector<std::pair<glm::dvec2, double>> asked;
 
     [[nodiscard]] double missing() const {
@@ -261,8 +262,8 @@ class FaceFitter {
     }
   };
 
-  /// Splits squares in four where receivers lack the most refinements, while more maps are permitted. `bases`: number
-  /// of faces that share the permitted maps.
+  /// Cuts squares in four, starting where receivers lack the most cuts, as long as more maps are permitted. `bases`:
+  /// number of faces that share the permitted maps.
   void add_tiles(const FittedFace& whole, std::uint32_t bases, std::vector<FittedFace>& faces) const {
     std::vector<Tile> tiles(1);
     for (std::size_t i = 0; i < samples_.size(); ++i) {

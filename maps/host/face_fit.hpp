@@ -26,14 +26,14 @@ struct FittedFace {
   int axis = 2;               ///< axis of the light's basis along which depths are measured
   glm::dvec3 along{0, 0, 1};  ///< the same axis with its sign, for e = (x, y, |z|)
   glm::dmat3 to_face{1};      ///< maps e to (a k, b k, k); (a, b) is the position on the face
-  double ratio = 0;           ///< LogPSM: rows are logarithms, of distances up to `ratio` times the nearest; 0: linear
+  double ratio = 0;           ///< LogPSM: rows are logarithms of distances up to `ratio` times the nearest; 0: linear
                               ///< rows
-  double margin = 0;          ///< fraction of the face that is left free: of LogPSM on either side of its rows, of a
-                              ///< circle around the circle
+  double margin = 0;          ///< fraction of the face left free: for LogPSM on either side of its rows; for a circle,
+                              ///< around the circle
   bool circle = false;        ///< e is projected by reflection at a paraboloid: a half space in a circle
                               ///< (paraboloid_face)
-  double from = 0, to = std::numeric_limits<double>::infinity();  ///< depths of the receivers that use this face, from
-                                                                  ///< ≤ z < to
+  double from = 0, to = std::numeric_limits<double>::infinity();  ///< depths z of the receivers that use this face:
+                                                                  ///< from ≤ z < to
 
   /// Returns the position of direction e, from 0 to 1 across the face; nullopt if the face does not contain e.
   [[nodiscard]] std::optional<glm::dvec2> place(const glm::dvec3& e) const;
@@ -55,7 +55,7 @@ gpu::LogarithmicPush logarithmic_push(const FittedFace& face, const gpu::LightVi
 struct FaceFitOptions {
   ViewFit fit;
   std::uint32_t size = 0;
-  std::uint32_t spare = 1;   ///< texels on every side, for taps of look-ups beside a receiver
+  std::uint32_t spare = 1;   ///< texels on every side, for taps of look-ups around a receiver
   glm::dvec2 beside{0};      ///< FitOptions::beside
   glm::dvec2 body_reach{0};  ///< FitOptions::body_reach
   SceneSpace space = {};

@@ -31,7 +31,7 @@ glm::vec3 row(const glm::dmat3& matrix, int i) {
   return {matrix[0][i], matrix[1][i], matrix[2][i]};
 }
 
-/// Returns a row over e as one over x − point in the world.
+/// Converts a row that is applied to e into a row that is applied to x − point in world axes.
 glm::dvec3 in_world(const glm::dvec3& of_e, int side, const LightBasis& basis) {
   return of_e.x * basis.u + of_e.y * basis.v + of_e.z * (side == 0 ? 1.0 : -1.0) * basis.n;
 }

@@ -30,8 +30,8 @@ float face_row(FittedFace face, float b) {
   return face.margin - (1.0 - 2.0 * face.margin) * log(left) / log(face.ratio);
 }
 
-// Finds the place of a direction e = (x, y, |z|), which may lie beside the face. Returns false behind the face, where
-// there is none.
+// Finds the place of a direction e = (x, y, |z|), which may be outside the face. Returns false for a direction behind
+// the face, which has no place.
 bool face_place(FittedFace face, vec3 e, out vec2 place) {
   place = vec2(2.0);
   if (face.ratio == kCircle) {

@@ -25,7 +25,8 @@ struct FittedFace {
 struct FaceTable {
   vec3 forward;  // a receiver's depth along the view axis is (dot(forward, p) + offset) / (dot(divisor, p) +
   float offset;  // divisor_offset)
-  vec3 divisor;  // 0, and 1 for the offset, but in another space than the scene's (SceneSpace)
+  vec3 divisor;  // divisor = 0 and divisor_offset = 1, unless maps are made in a space other than the scene's
+                 // (SceneSpace)
   float divisor_offset;
   uint count;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Workgroups of a look-up that has a sorting pass before it. Most receivers need no texel of the map: a pyramid says at
-// once that all of the light is seen from them, or none. A workgroup for each of these would cost as much as for others
-// on a driver that runs both sides of a branch; so the sorting pass, with an invocation for each workgroup, computes V
-// of these receivers, and lists the other workgroups. The sorting pass is the same shader with SORTS_OUT.
+// Workgroups of a look-up that has a sorting pass before it. Most receivers need no texel of the map: a pyramid shows
+// at once that they see all of the light, or none of it. On a driver that runs both sides of a branch, a workgroup for
+// such a receiver would cost as much as any other. So the sorting pass, with one invocation for each workgroup,
+// computes V of these receivers, and lists the other workgroups. The sorting pass is the same shader with SORTS_OUT.
 
 uint group_list() { return results.length() - kCutLoopWords - kGroupListWords; }
 

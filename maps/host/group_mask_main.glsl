@@ -37,7 +37,8 @@ void before_tiles() {
   }
 }
 
-// Counted even if the last sample has meanwhile been hidden, which invocations detect at different times.
+// Counts the texel even if all samples are hidden by now: invocations notice this at different times, and the count
+// must not depend on that.
 void look_at(MapFace face, uvec2 cell) {
   ++looked_at;
   if (!all_samples_hidden()) hide(face, cell);

@@ -10,7 +10,7 @@
 #include "maps/host/group_sort_main.glsl"
 #else
 shared uint sum_low, sum_high;  // sum_low + 2^15 sum_high
-uint sum = 0;                   // of this invocation
+uint sum = 0;                   // sum of this invocation
 
 void before_tiles() {}
 void look_at(MapFace face, uvec2 cell) { sum = min(sum + hidden_by(face, cell), kWholeLight); }

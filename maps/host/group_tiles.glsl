@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traversal of a kernel by a workgroup (group_kernel.glsl) in tiles: most of a kernel is lit, or seen beside the light,
-// and such tiles are skipped as a whole. Before including this file, the main defines
+// Traversal of a kernel by a workgroup (group_kernel.glsl) in tiles: most of a kernel is lit, or projects outside the
+// light, and such tiles are skipped as a whole. Before including this file, the main defines
 //   void before_tiles()                       run by all invocations, between barriers, before tiles are tested
 //   void look_at(MapFace face, uvec2 cell)
 
@@ -15,7 +15,7 @@ void look_at_kernel(MapFace face, Kernel kernel) {
   const ivec2 last = ivec2(kernel.last.x, min(kernel.last.y, int(lookup.last_row)));
   if (any(lessThan(last, first))) return;
   const int wide = 8 * stride;
-  // Blocks begin where the kernel begins; tiles of texels, at nodes of a pyramid.
+  // Blocks begin where the kernel begins; tiles of texels begin at nodes of a pyramid.
   const ivec2 begin = stride > 1 ? kernel.first : ((kernel.first + tile_shift) & ~7) - tile_shift;
   const int row = (first.y - begin.y) / wide;
   const uvec2 count = uvec2((last.x - begin.x) / wide + 1, (last.y - begin.y) / wide + 1 - row);

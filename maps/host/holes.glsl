@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Test whether a surface with holes (alphaMode MASK) is solid at a texel's centre: the nearest texel of the picture's
-// level 0, as in the pair's definition. Rasterisers interpolate linearly over a triangle in scene space; corners carry
-// values times a weight, and the weight, since a scene in projective coordinates has other weights than the face's w.
+// level 0, consistent with visibility::alpha_at. Rasterisers interpolate linearly over the triangle as drawn. Corners
+// therefore carry their values times a weight, and the weight itself, by which this shader divides: in a scene in
+// projective coordinates, the weight is not the face's w.
 #include "maps/host/holes.shared.h"
 
 STORAGE(1) readonly buffer Places { uint places[]; };  // written by the vertex shader

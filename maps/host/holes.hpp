@@ -18,8 +18,7 @@ bool has_holes(const visibility::SceneFloats& scene, std::uint32_t triangle);
 std::optional<visibility::SceneFloats> with_holes_drawn(const visibility::SceneFloats& scene);
 
 /// All surfaces with holes of a scene, in the form used by holes.glsl. Texels are classified here, in double,
-/// consistent with the pair's definition (visibility::alpha_at): for each texel the least vertex alpha at which the
-/// texel is solid is stored.
+/// consistent with visibility::alpha_at: for each texel the least vertex alpha at which the texel is solid is stored.
 class HoleSurfaces {
  public:
   /// `scene` must outlive this object.
@@ -32,7 +31,7 @@ class HoleSurfaces {
 
  private:
   const visibility::SceneFloats* scene_;
-  std::vector<std::uint32_t> number_;  // of each object's surface, the index among those with holes
+  std::vector<std::uint32_t> number_;  // for each object's surface, the index among those with holes
   std::vector<std::uint32_t> words_;
 };
 

@@ -7,7 +7,7 @@
 // Texels first.x ... last.x and first.y ... last.y of a face; empty where last < first.
 struct Kernel {
   ivec2 first, last;
-  bool whole;  // no part of the kernel is beside the face
+  bool whole;  // no part of the kernel is outside the face
 };
 
 const Kernel kNoKernel = Kernel(ivec2(0), ivec2(-1), false);
@@ -19,9 +19,10 @@ bool is_empty(Kernel kernel) { return any(lessThan(kernel.last, kernel.first)); 
 // for surfaces between texels' centres.
 Kernel kernel_on(MapFace face, uint size, vec3 e, vec2 lower, vec2 upper, float near, int padding) {
   if (!(near < e.z)) return kNoKernel;
-  // The pyramid between p and height near: convex, so its corners bound it; the part less than `near` along the face's
-  // axis is clipped, because a direction of the face leads to no height above the distance along the axis.
-  const float share = near / e.z;  // fraction of the distance from the light to p
+  // The pyramid between the receiver and the height `near` is convex, so its corners bound it. On a sideways face, the
+  // part less than `near` along the axis is clipped: in the face's directions, no height is above the distance along
+  // the axis, so no occluder is in that part.
+  const float share = near / e.z;  // fraction of the distance from the light to the receiver
   vec3 corners[5];
   for (int i = 0; i < 4; ++i) {
     const vec2 at = vec2((i & 1) == 0 ? lower.x : upper.x, (i & 2) == 0 ? lower.y : upper.y);
@@ -42,7 +43,7 @@ Kernel kernel_on(MapFace face, uint size, vec3 e, vec2 lower, vec2 upper, float 
       to = max(to, cut);
     }
   }
-  // Sideways, a row's centre may be as high as `near` where its lower border is not.
+  // On a sideways face, a row's centre may reach the height `near` even where the row's lower border does not.
   const int more = padding + (face.axis == 2 ? 0 : 1);
   const float end = float(size);
   Kernel kernel;

@@ -69,7 +69,7 @@ std::vector<glm::dvec2> light_outline(const visibility::Light& light, const Ligh
   if (is_round(light.kind) && !is_circle(light.kind)) {
     constexpr std::uint32_t kSides = 256;
     constexpr double kStep = 2 * std::numbers::pi / kSides;
-    const double reach = std::sqrt(kStep / std::sin(kStep));  // ½ m reach² sin(2π/m) = π
+    const double reach = std::sqrt(kStep / std::sin(kStep));  // area π for m = kSides sides: ½ m reach² sin(2π/m) = π
     const LightAxes axes = light_axes(light, basis);
     for (std::uint32_t i = 0; i < kSides; ++i) {
       const double angle = kStep * (i + 0.5);

@@ -12,8 +12,8 @@
 
 namespace penumbra::maps {
 
-/// Axes of a light's maps: orthonormal; of a planar light n points toward its emitting side, u along its first stored
-/// axis.
+/// Axes of a light's maps: orthonormal. For a planar light n points toward its emitting side, and u along its first
+/// stored axis.
 struct LightBasis {
   glm::dvec3 center{0};  ///< the light's centroid (a polygon's is not Light::center)
   glm::dvec3 u{0}, v{0}, n{0};
@@ -25,11 +25,11 @@ struct LightBasis {
 
 /// Returns the basis of a planar light (no sphere).
 LightBasis light_basis(const visibility::Light& light);
-/// Returns the basis of any light; a sphere's is along the world's axes, with n toward the middle of the scene along
-/// the axis on which the middle is farthest.
+/// Returns the basis of any light. A sphere's basis has the world's axes; its n points toward the middle of the scene
+/// along the axis on which the middle is farthest.
 LightBasis light_basis(const visibility::Light& light, const visibility::SceneFloats& scene);
 
-/// Bounding rectangle of the light along u and v; of a sphere, of its disk.
+/// Bounding rectangle of the light along u and v; for a sphere, that of its disk.
 struct LightBounds {
   glm::dvec2 lower{0}, upper{0};
 };
@@ -41,8 +41,8 @@ struct LightAxes {
 };
 LightAxes light_axes(const visibility::Light& light, const LightBasis& basis);
 
-/// Returns the corners of a rectangle or polygon in the basis; of an ellipse, those of a polygon of the same area, the
-/// image of a regular polygon. (Error outside the ellipse: areas/light_region.hpp; 256 sides are 2e-5 of the area off.)
+/// Returns the corners of a rectangle or polygon in the basis; for an ellipse, those of a polygon of the same area, the
+/// image of a regular polygon. (Error outside the ellipse: areas/light_region.hpp; with 256 sides, 2e-5 of the area.)
 std::vector<glm::dvec2> light_outline(const visibility::Light& light, const LightBasis& basis);
 
 }  // namespace penumbra::maps

@@ -5,8 +5,9 @@
 #include "maps/host/map_view.shared.h"
 #include "render/both.glsl"
 
-// Intersects the ray through a texel's centre with the triangle and returns the distance along the face's axis. For
-// faces with logarithmic rows, and for a paraboloid's circle, whose rows are the face's axes.
+// Intersects the ray through a texel's centre with the triangle and returns the distance along the face's axis. Used
+// for faces with logarithmic rows, and for a paraboloid's circle, for which inverse_a, inverse_b and inverse_1 are the
+// face's axes.
 
 STORAGE(1) readonly buffer Maps { float maps[]; };
 PUSH_CONSTANTS Log { LogarithmicPush push; };  // not Push: blocks with one name are one block in both stages

@@ -16,7 +16,7 @@ layout(local_size_x = kLookupGroup) in;
 #elif defined(GROUP_A_PACKET)
 layout(local_size_x_id = 0) in;  // a subgroup
 #elif defined(GROUP_A_RECEIVER)
-layout(local_size_x = 64) in;  // several subgroups: each may take as many turns of loops as a driver lets it
+layout(local_size_x = 64) in;  // several subgroups, each with as many iterations of loops as a driver permits
 #else
 layout(local_size_x = kLookupGroup) in;
 #endif
@@ -25,7 +25,7 @@ layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Maps { float maps[]; };
 layout(scalar, binding = 3) buffer Results { uint results[]; };  // masks, or the bits of V
 #ifdef FITTED_FACES
-#define FIRST_PRODUCT 5  // fitted.glsl has the previous binding
+#define FIRST_PRODUCT 5  // fitted.glsl uses the previous binding
 #else
 #define FIRST_PRODUCT 4
 #endif
@@ -47,7 +47,7 @@ uint receiver_plane, receiver_object;  // of the receiver, set by scalar_main.gl
 uint this_group() { return group_in_turn(); }
 #endif
 
-// Returns the index of the receiver of this invocation, or of this workgroup, counted from the part's first.
+// Returns the index of the receiver of this invocation, or of this workgroup, relative to the part's first receiver.
 uint this_receiver() {
 #ifdef GROUP_A_RECEIVER
   return this_group();

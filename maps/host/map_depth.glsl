@@ -11,6 +11,6 @@ float map_depth(CasterPush face, vec4 at) {
 float offset_map_depth(CasterPush face, vec4 at) {
   const float depth = map_depth(face, at);
   if (face.offset_factor == 0.0 && face.offset_units == 0.0) return depth;
-  // At the border of a triangle, fragments of its neighbour are also on its plane.
+  // At a triangle's border, derivatives include fragments outside the triangle; these are also on the triangle's plane.
   return min(depth + face.offset_factor * max(abs(dFdx(depth)), abs(dFdy(depth))) + face.offset_units, 1.0);
 }

@@ -143,8 +143,7 @@ SideTriangles triangles_on_side(const visibility::SceneFloats& scene, const std:
   return side;
 }
 
-/// Points of a hull in (x, z) at which bounds of the quotient of both, seen from one point, and bounds of z are
-/// reached.
+/// Keeps the points of a hull in (x, z) at which x / z, seen from one point, and z have their bounds.
 class Extremes {
  public:
   Extremes(double origin, double origin_z) : origin_(origin), origin_z_(origin_z) {}
@@ -167,7 +166,8 @@ class Extremes {
   bool any_ = false;
 };
 
-/// Returns the same data as triangles_on_side(), for maps of one point, of triangles that are not in the scene.
+/// Returns the same data as triangles_on_side(), but for triangles that are not in the scene, and for maps of one
+/// point.
 template <typename Counts>
 SideTriangles passing_on_side(const visibility::AllTriangles& all, const LightBasis& basis, const glm::vec3& point,
                               double sign, const Counts& counts) {
@@ -195,7 +195,8 @@ SideTriangles passing_on_side(const visibility::AllTriangles& all, const LightBa
   return side;
 }
 
-/// Returns the same data of the receivers seen by a camera: none of them reaches the light's plane.
+/// Returns the same data as triangles_on_side() for the receivers seen by a camera: none of them reaches the light's
+/// plane.
 SideTriangles body_on_side(std::span<const BodyPoint> body, const LightBasis& basis, double sign) {
   SideTriangles side;
   for (const BodyPoint& point : body) {
@@ -226,13 +227,13 @@ std::pair<double, double> tangents(const std::vector<glm::dvec2>& hull, double o
 /// Required contents of a window.
 struct Contents {
   const SideTriangles& receivers;
-  const SideTriangles& casters;  ///< casters to include, up to `beside` beside the receivers
+  const SideTriangles& casters;  ///< casters to include, up to the distance `beside` from the receivers' directions
   glm::dvec2 beside;
   bool or_hemicube;  ///< a hemicube replaces a window that is too wide because of its casters
 };
 
-/// Returns the largest distance beside a receiver's direction at which a caster can shade the receiver, for a light
-/// with extent `reach`.
+/// Returns the largest distance from a receiver's direction at which a caster can shade the receiver, for a light with
+/// extent `reach`.
 glm::dvec2 beside_of(const glm::dvec2& reach, const SideTriangles& receivers, const SideTriangles& casters) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (reach == glm::dvec2(0) || !casters.any || receivers.reach_plane) return glm::dvec2(0);

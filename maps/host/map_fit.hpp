@@ -32,24 +32,24 @@ struct FittedViews {
 struct FitOptions {
   std::uint32_t size = 0;  ///< on a side of a face, in texels
   /// Largest distance of a look-up's taps from a receiver's direction, in x/z and y/z: windows also hold casters up to
-  /// this distance beside the receivers. Where there is no caster, a tap beside the window returns an empty texel,
-  /// which is correct.
+  /// this distance from the receivers. Where there is no caster, a tap outside the window returns an empty texel, which
+  /// is correct.
   glm::dvec2 beside{0};
   /// For look-ups of all occluders between a receiver and any point of the light: extent of the light from the point
-  /// along u and v. Seen from the point, a caster at height z_c shades a receiver at height z up to reach · (1/z_c −
-  /// 1/z) beside the receiver: windows hold these casters, or become hemicubes.
+  /// along u and v. Seen from the point, a caster at height z_c shades a receiver at height z up to a distance of reach
+  /// · (1/z_c − 1/z) from the receiver: windows hold these casters, or become hemicubes.
   glm::dvec2 reach{0};
   /// Points seen by the camera, in place of the receivers. Null: all receivers.
   const std::vector<BodyPoint>* body = nullptr;
-  /// With `body`: limits `beside` to the distance from which casters can shade receivers, with the light's extent
-  /// `body_reach`; and `snap` keeps texels at the same positions for any body.
+  /// With `body`: extent of the light; `beside` is limited to the distance from which a caster can shade a receiver
+  /// under such a light. `snap` keeps texels at the same positions for any body.
   glm::dvec2 body_reach{0};
   bool snap = false;
-  /// All triangles, of which the scene has a part; null: the scene is whole. Only for maps of one point, for receivers
-  /// of any planar light.
+  /// All triangles, if the scene has only some of them; null: the scene has all. Only for maps of one point of a planar
+  /// light, fitted to the receivers.
   const visibility::AllTriangles* all = nullptr;
   bool hemicube = false;  ///< five faces, even if a window would suffice
-  glm::dvec2 jitter{0};   ///< displacement of windows in their texels, up to a half; contents stay inside them
+  glm::dvec2 jitter{0};   ///< displacement of windows in texels, at most a half; the contents stay inside the window
 };
 
 /// Returns FitOptions::reach of a light so large that every caster shades something.
@@ -60,8 +60,8 @@ glm::dvec2 reach_of_all(const visibility::SceneFloats& scene);
 FittedViews fit_views(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                       std::span<const glm::vec3> points, const FitOptions& options);
 
-/// Returns the largest distance, at most `beside`, beside receivers at heights up to `deepest` over the light's plane
-/// at which a caster of this light can shade them, seen from the light's centre.
+/// Returns the largest distance, at most `beside`, from a receiver's direction at which a caster of this light can
+/// shade the receiver, seen from the light's centre, for receivers at heights up to `deepest` over the light's plane.
 glm::dvec2 caster_margin(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis,
                          double sign, const glm::dvec2& reach, double deepest);
 

@@ -73,7 +73,7 @@ class MapProduct {
   MapProduct& operator=(const MapProduct&) = delete;
   virtual ~MapProduct() = default;
 
-  /// Makes the product from maps of its own, in submissions of its own. Called once for each light, before record and
+  /// Makes the product from separate maps, in separate submissions. Called once for each light, before record and
   /// MapRecipe::push.
   virtual void make([[maybe_unused]] const MapSource& source) {}
   /// Records the computation from maps whose rendering is already recorded. Called once for each light, for maps from
@@ -82,13 +82,14 @@ class MapProduct {
   [[nodiscard]] virtual const render::Buffer& buffer() const = 0;
   /// Returns the buffers bound by a look-up, in this order; their number is constant.
   [[nodiscard]] virtual std::vector<render::BufferReference> buffers() const { return {buffer()}; }
-  /// Returns specialization constants for the code of its look-ups, for maps of this size: the same number for any
-  /// size.
+  /// Returns specialization constants for the code of its look-ups, for maps of this size; their number does not depend
+  /// on the size.
   [[nodiscard]] virtual std::vector<std::uint32_t> constants([[maybe_unused]] std::uint32_t size,
                                                              [[maybe_unused]] std::uint32_t faces) const {
     return {};
   }
-  /// Returns whether it is made from maps and light alone, so that triangles may pass once (visibility::AllTriangles).
+  /// Returns whether the product is made from maps and light alone: then triangles pass only once
+  /// (visibility::AllTriangles).
   [[nodiscard]] virtual bool leaves_triangles() const { return false; }
   [[nodiscard]] virtual std::uint64_t memory_bytes() const { return buffer().bytes(); }
   /// Adds the counts of its look-ups so far (Method::counters).
@@ -123,13 +124,13 @@ struct MapRecipe {
   std::span<const std::uint32_t> look_up{};
   /// The look-up with FITTED_FACES, for options `fit` with maps other than windows. Empty: not supported by the method.
   std::span<const std::uint32_t> fitted_look_up{};
-  /// With group_a_receiver: the look-up with SORTS_OUT, which leaves workgroups that have nothing to look at out of the
-  /// look-up (group_list.glsl). Empty: all run.
+  /// With group_a_receiver: the look-up with SORTS_OUT, a pass that excludes workgroups that have nothing to look at
+  /// (group_list.glsl). Empty: all workgroups run.
   std::span<const std::uint32_t> sort_out{};
   std::vector<std::uint32_t> constants{};  ///< specialization constants of the look-up, after those of the products
   std::vector<std::unique_ptr<MapProduct>> products{};
   /// Largest distance of the look-up's taps from a receiver's direction (FitOptions::beside), for a light. Empty: no
-  /// taps beside.
+  /// taps elsewhere.
   std::function<glm::dvec2(const visibility::Light&, const LightBasis&)> beside{};
   /// Largest distance of taps from a receiver's texel, in texels; `beside` then is the largest extent of this distance.
   std::uint32_t beside_texels = 0;

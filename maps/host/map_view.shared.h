@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by C++ and GLSL: views of one light point's maps and push constants of look-ups. README.md has a picture.
+// Shared by C++ and GLSL: views of one light point's maps and push constants of look-ups. maps/README.md has the
+// notation.
 #ifndef PENUMBRA_MAPS_MAP_VIEW  // included more than once by shaders, hence an include guard in place of #pragma once
 #define PENUMBRA_MAPS_MAP_VIEW
 #ifdef __cplusplus
@@ -98,8 +99,8 @@ struct PeelPush {
 };
 
 // Last words of the results of look-ups by workgroups, some of whose loops a driver may end (group_kernel.glsl). Three
-// lists of one word for each receiver precede it: the workgroups that run in this pass, those to be repeated, and the
-// numbers of those that a sorting pass left (GroupList).
+// lists of one word for each receiver precede this struct: the workgroups that run in this pass, those to be repeated,
+// and the numbers of those that a sorting pass left (GroupList).
 struct CutLoops {
   uint any;     // 1: some workgroup's loops were ended
   uint asked;   // first word of the first list; 0: all workgroups run
@@ -109,7 +110,7 @@ const uint kCutLoopWords = 3;
 
 // Words before CutLoops, for look-ups with a sorting pass (group_list.glsl).
 struct GroupList {
-  uint count;  // of the part of the tile that was sorted last
+  uint count;  // number of listed workgroups of the part of the tile that was sorted last
   uint first;  // first word of the list, whose entries for a part begin at the part's first result
 };
 const uint kGroupListWords = 2;
@@ -124,7 +125,7 @@ struct LookupPush {
   uint receiver_count;
   uint first_result;     // position of the results of the first receiver, counted in receivers
   uint words_per_pixel;  // of results: a mask's words, or 1 for V
-  uint first_point;      // first of the light points whose maps are looked up; all of them bits of one word
+  uint first_point;      // first of the light points whose maps are looked up; all of these points are bits of one word
   uint point_count;
   uint faces;      // of one light point; layer i of the centre's maps begins at face i * faces
   uint layers;     // of maps from the light's centre

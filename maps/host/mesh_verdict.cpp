@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gives the verdict of depth maps on a mesh with defects: always "approximate", with those of its defects that a map
+// Gives the verdict of depth maps on a mesh with defects: always "approximate". Its reasons are the defects that a map
 // shows wrongly because they are smaller than a texel. Not from a paper; docs/defects.md has pictures.
 
 #include "maps/host/mesh_verdict.hpp"

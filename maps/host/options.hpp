@@ -74,7 +74,8 @@ std::vector<visibility::OptionDescription> map_option_descriptions(const visibil
                                                                    const visibility::RealOption& bias = kBias);
 /// Returns the common options and `depth`, for a method with one map from the light's centre.
 std::vector<visibility::OptionDescription> single_map_option_descriptions(DepthUse otherwise = DepthUse::first);
-/// Returns these and `receiverPlane`, for a method that compares the map's texels with a receiver one by one.
+/// Returns the options of single_map_option_descriptions() and `receiverPlane`, for a method that compares the map's
+/// texels with a receiver one by one.
 std::vector<visibility::OptionDescription> compared_map_option_descriptions(DepthUse otherwise = DepthUse::first);
 
 /// Parses the options. Throws UsageError for a size that the device cannot draw.

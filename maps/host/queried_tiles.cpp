@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // M. Giegl, M. Wimmer, Queried virtual shadow maps, I3D 2007, as described in the course notes of Eisemann et al. 2009,
-// section 3.2.4.1. Departures: pictures are compared on the host, where the paper counts by occlusion queries; all
-// squares that are due are cut for one picture; where the number of maps runs out, the most changed squares come first.
+// section 3.2.4.1. Departures: pictures are compared on the host, where the paper counts changed pixels by occlusion
+// queries; all squares that need a cut are cut before the next picture; if maps run out, the most changed squares are
+// cut first.
 
 #include "maps/host/queried_tiles.hpp"
 
@@ -19,17 +20,17 @@
 namespace penumbra::maps {
 namespace {
 
-/// A pixel has changed if its V has by more than this.
+/// Change of V beyond which a pixel counts as changed.
 constexpr float kChange = 1.0F / 16;
-/// The paper's finest level has 32 × 32 squares; twice as fine as its maps of 2048² are those of 32².
+/// Finest level, with 1024 × 1024 squares. The paper's finest level has 32 × 32, with maps of 2048².
 constexpr std::uint32_t kFinest = 10;
 
 struct Square {
-  std::size_t whole = 0;  ///< index of the face that it is a part of
+  std::size_t whole = 0;  ///< index of the face that the square is a part of
   std::uint32_t level = 0;
   glm::dvec2 first{0};
   std::vector<std::uint32_t> pixels;
-  std::size_t changed = std::numeric_limits<std::size_t>::max();  ///< pixels that the last cut changed
+  std::size_t changed = std::numeric_limits<std::size_t>::max();  ///< number of pixels changed by the last cut
 };
 
 /// Returns the quarters of a square.
@@ -85,7 +86,7 @@ QueriedTiles queried_tiles(const std::vector<FittedFace>& whole, std::span<const
     const std::vector<float> now = picture_of(result.faces);
     ++result.pictures;
     PENUMBRA_ASSERT(now.size() == receivers.size(), "a picture of {} pixels for {}", now.size(), receivers.size());
-    // A square that was not cut keeps its reason to be cut.
+    // A square that was not cut keeps its number of changed pixels, and so its reason to be cut.
     for (Square& square : quarters) {
       square.changed = static_cast<std::size_t>(std::ranges::count_if(
           square.pixels, [&](std::uint32_t pixel) { return std::abs(now[pixel] - before[pixel]) > kChange; }));

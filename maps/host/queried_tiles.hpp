@@ -19,9 +19,9 @@ struct QueriedTiles {
   std::uint32_t pictures = 0;  ///< pictures that were compared
 };
 
-/// M. Giegl, M. Wimmer, Queried virtual shadow maps, I3D 2007: cuts faces in four, and each square in which a cut
-/// changed more than fit.changed pixels again, the most changed first, while there are no more than fit.tiles faces.
-/// `receivers`: the pixels that the faces are for.
+/// M. Giegl, M. Wimmer, Queried virtual shadow maps, I3D 2007: cuts faces in four, then again each square in which a
+/// cut changed more than fit.changed pixels, the most changed first, as long as there are no more than fit.tiles faces.
+/// `receivers`: the receiver at each pixel, if any.
 QueriedTiles queried_tiles(const std::vector<FittedFace>& whole, std::span<const std::optional<SeenReceiver>> receivers,
                            const ViewFit& fit, const PictureOf& picture_of);
 

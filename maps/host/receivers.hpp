@@ -56,8 +56,8 @@ class Receivers {
   std::uint32_t width_ = 0, height_ = 0;
   std::vector<Band> bands_;
   std::optional<std::vector<std::uint32_t>> wanted_;  ///< ascending
-  std::vector<std::uint8_t> left_out_;                ///< of each pixel, if wanted_ is set: a receiver that was not
-                                                      ///< requested
+  std::vector<std::uint8_t> left_out_;                ///< for each pixel, if wanted_ is set: 1 for a receiver that was
+                                                      ///< not requested
 };
 
 }  // namespace penumbra::maps

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-/// Class of methods made from a recipe. Inside map_method.cpp and map_look_ups.cpp only.
+/// Class of methods made from a recipe. Included by map_method.cpp and map_look_ups.cpp only.
 namespace penumbra::maps {
 
 /// A method of maps from a recipe: maps of the current light, made when it is prepared or when there are view samples.
@@ -78,9 +78,9 @@ class MapMethod final : public visibility::Method,
   /// Returns the number of result words of a pixel: its mask, or V.
   [[nodiscard]] std::uint32_t words_per_pixel() const { return gives_masks() ? light_->words_per_mask() : 1; }
   [[nodiscard]] bool sorts_out() const { return !recipe_.sort_out.empty(); }
-  /// Returns the bytes of results of `pixels` pixels; with workgroups that loop, two words a pixel more, in which
-  /// workgroups whose loops were ended mark this for this pass and the next, and the words of CutLoops; with a list of
-  /// workgroups, another word a pixel, and GroupList.
+  /// Returns the size in bytes of the results of `pixels` pixels. Workgroups that loop need two more words a pixel,
+  /// which mark workgroups whose loops were ended, for this pass and the next, and CutLoops; a list of workgroups needs
+  /// one more word a pixel, and GroupList.
   [[nodiscard]] std::uint64_t result_bytes(std::uint64_t pixels) const {
     if (!recipe_.group_a_receiver) return pixels * words_per_pixel() * sizeof(std::uint32_t);
     const std::uint64_t words = words_per_pixel() + (sorts_out() ? 3 : 2);
@@ -99,7 +99,7 @@ class MapMethod final : public visibility::Method,
   }
   [[nodiscard]] std::uint32_t total_layers() const { return recipe_.layers.count + (recipe_.layers.farthest ? 1 : 0); }
 
-  /// Returns the specialization constants of the look-up, for a light whose maps have `faces` faces: most have one.
+  /// Returns the specialization constants of the look-up, for a light whose maps have `faces` faces (most have one).
   [[nodiscard]] std::vector<std::uint32_t> constants_for(std::uint32_t faces) const;
   [[nodiscard]] render::ComputePass make_look_up() const;
   [[nodiscard]] std::optional<render::ComputePass> make_sort() const;
@@ -133,10 +133,11 @@ class MapMethod final : public visibility::Method,
   /// Runs all look-ups, and repeats workgroups whose loops were ended by the device, with fewer rows of a map at a
   /// time.
   void ask_all(const visibility::Tile& tile);
-  /// Returns the push constants of look-ups of a part of a tile, without rows.
+  /// Returns the push constants of look-ups of a part of a tile, without the range of rows.
   [[nodiscard]] gpu::LookupPush push_of(const Receivers::Part& part, std::uint32_t first, std::uint32_t count) const;
   [[nodiscard]] std::vector<render::BufferReference> buffers_of(const Receivers::Part& part) const;
-  /// Sorts out the workgroups of a tile that have nothing to look at, and keeps the number of the others.
+  /// Runs the sorting pass, which excludes workgroups of a tile that have nothing to look at, and stores the number of
+  /// the others.
   void sort_out(const visibility::Tile& tile);
   /// Records the look-ups of a tile in the maps of `count` light points, `rows_at_once` rows of a map at a time.
   void ask(render::Commands& commands, const visibility::Tile& tile, std::uint32_t first, std::uint32_t count,
@@ -148,23 +149,23 @@ class MapMethod final : public visibility::Method,
   CasterMaps casters_;
   std::vector<std::uint32_t> constants_;
   render::ComputePass look_up_;               ///< with the current constants
-  std::optional<render::ComputePass> sort_;   ///< of a recipe that sorts out
-  std::vector<std::uint32_t> listed_groups_;  ///< of each part of the tile, after sort_
+  std::optional<render::ComputePass> sort_;   ///< sorting pass, if the recipe has one
+  std::vector<std::uint32_t> listed_groups_;  ///< number for each part of the tile, after sort_
   Receivers receivers_;
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
-  SceneSpace space_;                               // of the camera: the scene's, or that of a sun
-  const visibility::AllTriangles* all_ = nullptr;  ///< of which the scene has a part; null: it is whole
+  SceneSpace space_;                               // space of the camera: the scene's own, or that of a sun
+  const visibility::AllTriangles* all_ = nullptr;  ///< all triangles, if scene_ has only some of them; else null
   const visibility::Light* light_ = nullptr;
   const visibility::ViewSamples* samples_ = nullptr;
   LightBasis basis_;
   std::vector<visibility::LightPart>
       parts_;  ///< parts of the light with a map each; one, unless the recipe has several
   FittedViews fitted_;
-  CameraFaces faces_;  ///< maps of a camera, if not windows; fitted_ has their number
+  CameraFaces faces_;  ///< faces fitted to a camera, if not windows; fitted_ has their number
   Aliasing aliasing_;
-  bool maps_are_old_ = false;  ///< made for another view
+  bool maps_are_old_ = false;  ///< the maps were made for another view
   std::vector<std::uint32_t> own_push_;
   std::uint32_t batch_ = 1;        ///< light points at a time
   visibility::Tile tile_{};        ///< most recent tile

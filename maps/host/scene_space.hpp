@@ -8,10 +8,10 @@
 
 namespace penumbra::maps {
 
-/// Where the camera is for maps that are made in a space of their own: `to_scene` takes (p, 1) there to (x w, w), x in
-/// the scene and w > 0 at all that is lit. A homography takes planes to planes, so that the frustum, slices of depth
-/// and moves along surfaces can be had there. By default the space is the scene's own, and all of these are exactly
-/// what they are without it.
+/// Relation of the space in which maps are made to the scene, where the camera is: `to_scene` maps (p, 1) to (x w, w),
+/// with x the point in the scene and w > 0 for everything that is lit. A homography maps planes to planes, so the
+/// frustum, slices of depth and moves along surfaces can be computed in the maps' space. By default both spaces are the
+/// same, and all results are exactly those without this class.
 class SceneSpace {
  public:
   SceneSpace() = default;
@@ -21,12 +21,12 @@ class SceneSpace {
     const glm::dvec4 at = to_scene_ * glm::dvec4(p, 1);
     return glm::dvec3(at) / at.w;
   }
-  /// Returns (n, c) of the plane n · p + c, which has the sign of the scene's (n, c) at its point x, and w times its
-  /// value.
+  /// Converts a plane of the scene: returns (n, c) such that n · p + c is w times the value of the given plane at the
+  /// scene's point for p. Both values have the same sign.
   [[nodiscard]] glm::dvec4 plane(const glm::dvec4& in_scene) const { return glm::transpose(to_scene_) * in_scene; }
-  /// Returns (n, c) of the function n · p + c that is w at p.
+  /// Returns (n, c) such that n · p + c is w at p.
   [[nodiscard]] glm::dvec4 divisor() const { return plane({0, 0, 0, 1}); }
-  /// Returns a normal in the scene, of any length, of the plane through p with the normal n here.
+  /// Returns the scene's normal, of any length, of the plane that goes through p with the normal n in the maps' space.
   [[nodiscard]] glm::dvec3 scene_normal(const glm::dvec3& p, const glm::dvec3& n) const {
     return glm::dvec3(glm::transpose(from_scene_) * glm::dvec4(n, -glm::dot(n, p)));
   }
@@ -48,7 +48,7 @@ class SeesScene {
   SeesScene& operator=(const SeesScene&) = delete;
   virtual ~SeesScene() = default;
 
-  /// Announces where the camera of the next view samples is. Called before prepare_light.
+  /// Sets the space that relates maps to the camera of the next view samples. Called before prepare_light.
   virtual void see_through(const SceneSpace& space) = 0;
 };
 

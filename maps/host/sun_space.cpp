@@ -20,9 +20,9 @@
 namespace penumbra::maps {
 namespace {
 
-/// How far the plane Z = b, on which the map is infinite (SunSpace), is below the scene; 1 is the diagonal of the
-/// scene's box. If it were farther away, depths would be distorted less, but tolerances relative to a depth (a slice's
-/// end, Slices) would be a larger part of the scene, and floats would lose digits.
+/// Distance of the plane Z = b, on which the map is infinite (SunSpace), below the scene, in diagonals of the scene's
+/// box. With a larger distance, depths would be distorted less, but tolerances relative to a depth (a slice's end,
+/// Slices) would be a larger part of the scene, and floats would lose digits.
 constexpr double kScenesBelow = 4;
 /// Tangent used for a sun of one direction.
 constexpr double kLeastTangent = 0x1p-20;
@@ -118,14 +118,15 @@ glm::dvec3 SunSpace::local(const glm::vec3& p) const {
   return {glm::dot(d, u_), glm::dot(d, v_), glm::dot(d, n_)};
 }
 
-/// The plane z = 0 lies at −S: positions keep their number of digits.
+/// Returned z coordinates are relative to S, so that positions keep their number of digits: the sun's plane z = 0 is at
+/// −S.
 glm::vec3 SunSpace::mapped(const glm::vec3& p) const {
   const glm::dvec3 at = local(p);
   const double share = scale_ / (below_ - at.z);
   return glm::vec3(share * at.x, share * at.y, share * at.z);  // S² / q − S = S Z / q, since b = S
 }
 
-/// Here z counts from −S, where w is 0: with a position p, (X, Y, Z) = p / w, w = 1 + p.z / S.
+/// For a mapped position p, (X, Y, Z) = p / w with w = 1 + p.z / S: w is 0 on the sun's plane, where p.z = −S.
 SceneSpace SunSpace::space() const {
   glm::dmat4 to_scene(1);
   to_scene[0] = glm::dvec4(u_, 0);

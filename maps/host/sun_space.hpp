@@ -25,8 +25,8 @@ namespace penumbra::maps {
 /// meaning as elsewhere.
 class SunSpace final : public visibility::AllTriangles {
  public:
-  /// `sun` must be a sun. `all`: all triangles, of which the scene has a part; null: it is whole. Must outlive this
-  /// object.
+  /// `sun` must be a sun. `all`: all triangles, if the scene has only some of them, else null. Arguments must outlive
+  /// this object.
   SunSpace(const visibility::SceneFloats& scene, const visibility::Light& sun,
            const visibility::AllTriangles* all = nullptr);
 
@@ -35,13 +35,13 @@ class SunSpace final : public visibility::AllTriangles {
   bool take(const visibility::Light& sun);
 
   [[nodiscard]] const visibility::SceneFloats& scene() const { return scene_; }
-  /// All triangles, mapped; if the constructor was given any.
+  /// Calls take(run) for all triangles, mapped, if the constructor was given any.
   void for_each_run(const std::function<void(const Run&)>& take) const override;
   void for_each_positions(const std::function<void(std::span<const glm::vec3>)>& take) const override;
   /// Returns the disk. A sun of one direction is replaced by a disk with a tangent of 2⁻²⁰, less than a texel of any
   /// map.
   [[nodiscard]] const visibility::Light& light() const { return light_; }
-  /// Returns where the scene, and so the camera of its view samples, is from here.
+  /// Returns the relation of this space to the scene, where the camera of the view samples is.
   [[nodiscard]] SceneSpace space() const;
   /// Returns view samples of the original scene, mapped to this space.
   [[nodiscard]] visibility::ViewSamples mapped(const visibility::ViewSamples& samples) const;
@@ -53,7 +53,7 @@ class SunSpace final : public visibility::AllTriangles {
 
   void make_light(const visibility::Light& sun);
 
-  visibility::Light::Directions directions_;  // of the sun that defines the axes
+  visibility::Light::Directions directions_;  // directions of the sun that defines the axes
   glm::dvec3 u_{0}, v_{0}, n_{0}, middle_{0};
   double scale_ = 1, below_ = 1;  // S, and b from the scene's middle
   visibility::SceneFloats scene_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Taps into the maps of one light point; README.md has a picture.
+// Taps into the maps of one light point; maps/README.md has the notation.
 //
 // A texel holds the depth of the nearest surface in the direction of its *centre*, while the receiver lies somewhere in
 // the texel. A direct comparison of the two depths shades a tilted receiver by itself (acne). So the comparison is made

@@ -50,7 +50,7 @@ inline constexpr visibility::ChoiceOption kFit{
     Fit::receivers,
     "region over which texels are spread: all receivers; the camera's view, in one window, in slices of depth or in "
     "tiles; a perspective of the view; or the faces of its frustum, each with a perspective"};
-/// The same option of methods that look kernels of texels up in one window or hemicube.
+/// The same option for methods that look up kernels of texels in one window or hemicube.
 inline constexpr visibility::ChoiceOption kWindowFit{
     "fit",
     {{"receivers", Fit::receivers}, {"view", Fit::view}},
@@ -112,7 +112,7 @@ inline constexpr visibility::ChoiceOption kProjection{
     Projection::window,
     "fit=receivers: a window of directions (five faces where it would be too wide), always the five faces of half a "
     "cube, or a half space in the circle of a paraboloid"};
-/// Values of all these options.
+/// Values of all options above.
 struct ViewFit {
   Fit fit = Fit::receivers;
   Projection projection = Projection::window;
@@ -143,13 +143,13 @@ struct ViewFit {
   }
 };
 
-/// Returns these options, as listed by `methods`.
+/// Returns all options above, as listed by `methods`.
 std::vector<visibility::OptionDescription> view_fit_descriptions();
-/// Returns those of methods with kWindowFit.
+/// Returns the options of methods with kWindowFit.
 std::vector<visibility::OptionDescription> window_fit_descriptions();
-/// Returns "fit=tsm", or "projection=paraboloid".
+/// Returns the fit as an option, such as "fit=tsm" or "projection=paraboloid".
 std::string words_of(const ViewFit& fit);
-/// Returns the choice of a method that has some of the options, or none.
+/// Returns the values of the options that the method has, and defaults of all others.
 ViewFit view_fit(std::span<const visibility::OptionDescription> options, const visibility::ParsedOptions& parsed);
 
 /// Point that a fit must contain.
@@ -169,14 +169,15 @@ std::vector<BodyPoint> body_points(const visibility::SceneFloats& scene, const v
 /// 3.2.3.1). 0 < near ≤ far.
 std::vector<double> split_depths(const ViewFit& fit, double near, double far, std::uint32_t slices);
 
-/// Returns n_opt of Wimmer et al. 2004: the distance of the perspective's centre before the nearest visible point for
-/// which the errors along the warped axis are equal at both ends. 0 < near ≤ far are depths along the view axis at the
-/// ends of a map's axis across the light's rays, and `sine` is that of the angle γ between the view and the light: the
-/// ends are (far − near) / sine from each other.
+/// Returns n_opt of Wimmer et al. 2004: the distance of the perspective's centre in front of the nearest visible point
+/// for which the errors along the warped axis are equal at both ends. 0 < near ≤ far are depths along the view axis at
+/// the ends of a map's axis across the light's rays, and `sine` is the sine of the angle γ between the view and the
+/// light: the ends are (far − near) / sine from each other.
 double lispsm_distance(double near, double far, double sine);
 
-/// Returns the distance of the perspective's centre that maps the point at `focus` of `length` from the nearest point
-/// to four fifths of the map (Martin and Tan 2004, η). Infinite if the point is there without a perspective, or nearer.
+/// Returns the distance of the perspective's centre from the nearest point such that, of points up to `length` behind
+/// the nearest, the one at the distance `focus` is mapped to four fifths of the map (Martin and Tan 2004, η). Infinite
+/// if that point is there, or nearer, without a perspective.
 double tsm_distance(double length, double focus);
 
 /// Window of `size` texels with positions at multiples of their width: the width is increased to one of the steps

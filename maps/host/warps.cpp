@@ -2,11 +2,10 @@
 // Computes the perspectives of Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002
 // (PSM) and Lloyd et al. 2008 (LogPSM), for a point light, and the perspectives of a frustum's faces: S. Kozlov,
 // Perspective shadow maps: care and feeding, GPU Gems 2004; Lloyd, Tuft, Yoon, Manocha, Warping and partitioning for
-// low error shadow maps, EGSR 2006. A face's coordinates (a/w, b/w) are the light's
-// post-perspective space, where its rays are parallel; there the first, second and last apply a perspective along the
-// image of the view axis whose centre is n before the nearest visible point. Departure: rays through the light are
-// points of its face, and depths are kept as distances along the rays, so that PSM needs no light in post-perspective
-// space and no inversion of depths.
+// low error shadow maps, EGSR 2006. A face's coordinates (a/w, b/w) are the light's post-perspective space, where its
+// rays are parallel. There, LiSPSM, TSM and LogPSM apply a perspective along the image of the view axis, whose centre
+// is n in front of the nearest visible point. Departure: rays through the light are points of its face, and depths are
+// kept as distances along the rays, so that PSM needs no light in post-perspective space and no inversion of depths.
 
 #include "maps/host/warps.hpp"
 
@@ -33,8 +32,8 @@ glm::dvec2 seen_at(const glm::dvec3& x) {
   return glm::dvec2(x) / x.z;
 }
 
-/// Returns a perspective along `along`, a unit vector of the face, whose centre is `distance` before `nearest`; b' runs
-/// from 0 to 1 over `length`.
+/// Returns a perspective along `along`, a unit vector of the face, whose centre is `distance` in front of `nearest`; b'
+/// runs from 0 to 1 over `length`.
 glm::dmat3 perspective(const glm::dvec2& along, double nearest, double length, double distance) {
   const double far = distance + length;
   const glm::dvec3 a(-along.y, along.x, 0), g(along, 0);
@@ -49,12 +48,12 @@ double sine_of(const SeenBody& body) {
   return glm::length(glm::cross(glm::normalize(middle), glm::normalize(body.forward)));
 }
 
-/// Returns the least depth along the view axis in units of the face, whose plane at the point with that depth is as
-/// far from the light as the point.
+/// Returns the least depth of a point along the view axis, in units of the face's coordinates at that point: divided by
+/// the point's distance from the light.
 double nearest_depth(const SeenBody& body) {
   const auto depth = [&](const glm::dvec3& point) { return glm::dot(point - body.eye, body.forward); };
   const glm::dvec3 nearest = std::ranges::min(body.points, {}, depth);
-  // Taps beside receivers may be behind the eye.
+  // Taps around receivers may be behind the eye.
   return std::max(depth(nearest), body.near) / nearest.z;
 }
 
@@ -65,7 +64,7 @@ std::optional<double> distance_of(Fit fit, const SeenBody& body, double near, do
   const double sine = sine_of(body);
   if (!(sine > 0)) return std::nullopt;
   if (fit == Fit::logpsm) return near > 0 ? std::optional(near / sine) : std::nullopt;
-  // Depths change by the sine on the way across the light's rays.
+  // A step across the light's rays changes the depth by the step times the sine.
   const double nearest = nearest_depth(body);
   return lispsm_distance(nearest, nearest + (far - near) * sine, sine);
 }
@@ -103,8 +102,8 @@ struct CameraMap {
   double z_more = 0;
 };
 
-/// Returns the image of rays from 0 on a plane across the light's direction in post-perspective space, through the
-/// middle of the body there; nullopt if part of the body is on the other side of the line at infinity.
+/// Returns the homography from rays from 0 to a plane in post-perspective space, across the light's direction and
+/// through the middle of the body there; nullopt if part of the body is on the other side of the line at infinity.
 std::optional<glm::dmat3> post_perspective(const SeenBody& body, double back) {
   const glm::dvec3 eye = body.eye - back * body.forward;
   const double near = body.near + back, far = body.far + back;
@@ -211,7 +210,7 @@ bool is_moderate(const glm::dmat3& matrix, std::span<const glm::dvec3> points) {
     least = std::min(least, k);
     most = std::max(most, k);
   }
-  // On one side of the line at infinity, and far enough from the line for float32.
+  // All points must be on one side of the line at infinity, and far enough from the line for float32.
   constexpr double kStrongest = 1e-4;
   return least > kStrongest * most && most > 0;
 }

@@ -24,18 +24,18 @@ struct SeenBody {
 /// Homography from (a, b, w) to (a' k, b' k, k) with k > 0 at all points.
 struct Warp {
   glm::dmat3 matrix{1};
-  double ratio = 0;  ///< logpsm: b' is from 0 to 1, and `ratio` is the distance of the farthest point from the eye over
-                     ///< that of the nearest
+  double ratio = 0;  ///< logpsm: distance of the farthest point from the eye, divided by that of the nearest; b' runs
+                     ///< from 0 to 1
 };
 
-/// Returns the warp; the identity where a warp has no effect: where the view is along the light's rays, or of logpsm
-/// where the eye, seen from the light, is above the visible points. `focus`: ViewFit::focus.
+/// Returns the warp; the identity where a warp has no effect: if the view is along the light's rays, and for logpsm if
+/// the eye, seen from the light, is above the visible points. `focus`: ViewFit::focus.
 Warp warp_of(Fit fit, const SeenBody& body, double focus);
 
-/// A face of the camera's frustum, seen from the light's centre: the homography from the directions in which rays leave
-/// the frustum through the face to the camera's image of the face. Of a side of the frustum, places are those along the
-/// picture's border and the inverse of the depth; of the near and the far end, those in the picture. All of the face is
-/// [−1, 1]².
+/// A face of the camera's frustum, seen from the light's centre: the homography from the directions of rays that leave
+/// the frustum through the face to the camera's image of the face, [−1, 1]². The image's coordinates on a side of the
+/// frustum are the position along the picture's border and the inverse of the depth; on the near and the far end, the
+/// position in the picture.
 struct FrustumFace {
   glm::dmat3 matrix{1};
 
@@ -44,7 +44,7 @@ struct FrustumFace {
 };
 
 /// Returns the faces of the frustum from body.near to body.far through which rays from the light's centre leave the
-/// frustum: those whose inner side the light is on. The frustum is convex, so each ray leaves through one of them.
+/// frustum: those with the light on their inner side. The frustum is convex, so each ray leaves through one of them.
 /// Empty for an orthographic camera.
 std::vector<FrustumFace> frustum_faces(const SeenBody& body);
 

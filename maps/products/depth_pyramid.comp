@@ -30,7 +30,7 @@ void main() {
     const uvec2 child = uvec2(k & 1, k >> 1);
     if (push.level == 0) {
       const uint size = push.cells - 1;
-      const uvec2 texel = at + child - 1;  // of cell 0, and beyond the last: outside the map
+      const uvec2 texel = at + child - 1;  // for cell 0 and beyond the last cell: outside the map
       const bool inside = texel.x < size && texel.y < size;
       const float depth = inside ? maps[(face * size + texel.y) * size + texel.x] : kEmpty;
       range = vec2(min(range.x, depth), max(range.y, depth));

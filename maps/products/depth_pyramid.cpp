@@ -15,7 +15,8 @@
 namespace penumbra::maps {
 namespace {
 
-/// Quadtree levels of a YSM: 0, 1 and 2, with an MSSM of a sixteenth of the nodes above. The papers give no number.
+/// Last quadtree level of a YSM: levels 0, 1 and 2 form a quadtree, below an MSSM of a sixteenth of the nodes. The
+/// papers give no number.
 constexpr std::uint32_t kWholeOfHybrid = 2;
 constexpr std::uint32_t kPyramidGroup = 64;
 
@@ -24,7 +25,7 @@ std::uint64_t nodes_of(const gpu::PyramidHeader& header, std::uint32_t level, st
   return side * side * faces;
 }
 
-/// Returns the level up to which the nodes of a kind are spaced by their width.
+/// Returns the level up to which the nodes of a pyramid of this kind are spaced by their width.
 std::uint32_t whole_of(PyramidKind kind, std::uint32_t size) {
   switch (kind) {
     case PyramidKind::hsm:

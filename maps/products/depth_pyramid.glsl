@@ -19,7 +19,7 @@ vec2 pyramid_node(uint level, uint face, uvec2 cell) {
 vec2 depth_range_of_cells(uint face, uvec2 lower, uvec2 upper) {
   const PyramidQuery query = pyramid_query(lower, upper, pyramid.header.whole, pyramid.header.top);
   const uvec2 count = (query.to - query.from) / query.step + 1;
-  // One loop: of two nested loops left at different iterations by neighbours, Mesa 22.3 on processors loses some
+  // One loop: if invocations leave two nested loops at different iterations, Mesa 22.3 on processors loses some
   // iterations.
   vec2 range = vec2(1.0, 0.0);
   for (uint k = 0; k < count.x * count.y; ++k) {

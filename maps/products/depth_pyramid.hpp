@@ -14,9 +14,9 @@ namespace penumbra::maps {
 enum class PyramidKind : std::uint8_t { hsm, mssm, ysm };
 
 /// Returns the header of a pyramid over `faces` maps of size² texels. An MSSM or a YSM that would not fit into
-/// `most_bytes` is a quadtree up to the first level from which on it fits: without upper levels a query of a whole map
-/// would need as many nodes as the coarsest level has. Throws ResourceError, with the largest possible size, if not
-/// even a quadtree fits.
+/// `most_bytes` has quadtree levels up to the first level from which on the rest fits: if upper levels were left out
+/// instead, a query of a whole map would need as many nodes as the coarsest level has. Throws ResourceError, with the
+/// largest possible size, if not even a quadtree fits.
 gpu::PyramidHeader pyramid_header(PyramidKind kind, std::uint32_t size, std::uint32_t faces, std::uint64_t most_bytes);
 
 /// Returns the bytes of the pyramid's nodes.

@@ -55,16 +55,16 @@ PENUMBRA_SHARED uint pyramid_log2(uint x) {
   return exponent;
 }
 
-// Nodes that cover a rectangle of cells: columns from.x, from.x + step … of a level, the last one at to.x + 1 − step;
-// rows in the same form; in nodes of this level.
+// Nodes of a level that cover a rectangle of cells, counted in nodes of this level: columns from.x, from.x + step …,
+// the last one at to.x + 1 − step; rows in the same form.
 struct PyramidQuery {
   uint level, shift, step;
   uvec2 from, to;
 };
 
-// Returns the nodes of a query: of the quadtree levels, the finest of which 2 × 2 nodes suffice; above, the largest
-// squares that fit into the rectangle and cover exactly the rectangle: four if the rectangle is about square, more if
-// the rectangle is long.
+// Returns the nodes of a query. On quadtree levels, these are up to 2 × 2 nodes of the finest level on which so many
+// suffice. Above, they are the largest squares that fit into the rectangle, and they cover it exactly: four squares if
+// the rectangle is about square, more if it is long.
 PENUMBRA_SHARED PyramidQuery pyramid_query(uvec2 lower, uvec2 upper, uint whole, uint top) {
   PyramidQuery query;
   uint pair = 0;
@@ -90,9 +90,9 @@ struct PyramidWalk {
   bool done;
 };
 
-// Returns the finest level with a node that begins with the rectangle (by the spacing of nodes: at its first cell in an
-// MSSM, at the quadtree's node that holds it in an HSM) and covers the rectangle; if there is no such level, the
-// coarsest: several roots then lie side by side.
+// Returns the finest level on which one node covers the rectangle: in an MSSM the node that begins at the rectangle's
+// first cell, in an HSM the quadtree's node that contains this cell. If there is no such level, returns the coarsest:
+// several roots then lie side by side.
 PENUMBRA_SHARED uint pyramid_root_level(uvec2 lower, uvec2 upper, uint whole, uint top) {
   for (uint level = 0; level < top; ++level) {
     const uint shift = pyramid_shift(level, whole), width = 1u << level;

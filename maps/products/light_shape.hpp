@@ -17,9 +17,9 @@ namespace penumbra::maps {
 /// list is also spread evenly. (Unlike Light::points, the caller sets their number.)
 std::vector<glm::vec2> light_pattern(const visibility::Light& light, const LightBasis& basis, std::uint32_t count);
 
-/// Map from the unit square to a planar light, with areas in proportion and its outline on the light's: squares around
-/// the middle become the light's own shape around the centroid (Shirley and Chiu 1997 for a disk or ellipse; a
-/// rectangle is only scaled).
+/// Map from the unit square to a planar light that preserves ratios of areas and maps the square's outline to the
+/// light's: squares around the middle become the light's own shape around the centroid (Shirley and Chiu 1997 for a
+/// disk or ellipse; a rectangle is only scaled).
 class LightSquare {
  public:
   explicit LightSquare(const visibility::Light& light);

@@ -18,8 +18,9 @@ namespace penumbra::maps {
 enum class IdsOf : std::uint8_t { planes, objects };
 
 /// Caster stored in a texel of the maps of a light's centre: for each texel of the nearest layer the triangle's rank
-/// (visibility::ranks), gpu::kNoId for an empty texel. Of surfaces at one depth (within 2⁻²⁰, as for layers) the
-/// smallest rank. Followed by the values compared by a look-up: for each rank the index of its plane, or of its object.
+/// (visibility::ranks), gpu::kNoId for an empty texel. If there are several surfaces at one depth (within 2⁻²⁰, as for
+/// layers), the smallest rank is stored. Followed by the values compared by a look-up: for each rank the index of its
+/// plane, or of its object.
 class NearestIds final : public MapProduct {
  public:
   explicit NearestIds(const render::Device& device, Rasteriser rasteriser = Rasteriser::vulkan,

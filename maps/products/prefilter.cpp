@@ -186,7 +186,8 @@ std::uint64_t Prefilter::buffer_bytes() const {
 std::vector<std::uint32_t> Prefilter::constants(std::uint32_t size, std::uint32_t faces) const {
   const auto layout = prefilter_layout(options_, size, faces, buffer_bytes());
   const bool one = layout && layout->blocks <= layout->table.per_buffer;
-  return {static_cast<std::uint32_t>(options_.kind), one ? 1 : gpu::kPrefilterBuffers};  // if there is none: see record
+  return {static_cast<std::uint32_t>(options_.kind), one ? 1 : gpu::kPrefilterBuffers};  // if there is no layout,
+                                                                                         // record() reports it
 }
 
 void Prefilter::add_counters(std::map<std::string, std::uint64_t>& counters) const {

@@ -5,7 +5,7 @@
 #include "maps/products/prefilter_value.glsl"
 
 layout(constant_id = 0) const uint kScheme = kTable;  // a pipeline has the code of one scheme alone
-// Few devices skip code not selected by a switch for all of a group's invocations: some fetch from each buffer.
+// Few devices skip the cases that a switch selects for no invocation of a group: others fetch from every buffer.
 layout(constant_id = 1) const uint kBuffers = kPrefilterBuffers;
 
 layout(scalar, binding = PREFILTER_FIRST) readonly buffer Table { PrefilterTable table; PrefilterValue values[]; };
@@ -22,7 +22,7 @@ layout(scalar, binding = PREFILTER_FIRST + 4) readonly buffer Images3 { uint ima
 struct Box {
   uint face;     // of the light point
   vec2 lower, upper;
-  float inside;  // fraction of the window in the map; beside the map there is no caster
+  float inside;  // fraction of the window in the map; outside the map there is no caster
 };
 
 uint word_at(uint block, uint place) {
@@ -39,7 +39,7 @@ uint word_at(uint block, uint place) {
 
 // ---- summed areas
 
-// Sums of all texels below and left of four columns and rows: no corner lies beyond the border.
+// Columns and rows at whose crossings sums of all texels below and to the left are read: none lies beyond the border.
 struct Corners {
   uvec4 x, y;
 };
@@ -156,18 +156,18 @@ float mean_over(uint index, Box box, float log2_scale) {
 
 // ---- windows
 
-// Returns the part of a rectangle of texels that is in the map. `extent`: upper - lower. `alone`: beside the face there
-// is no caster.
+// Returns the part of a rectangle of texels that is in the map. `extent`: upper - lower. `alone`: whether there is no
+// caster outside the face.
 Box box_on(uint face, bool alone, vec2 lower, vec2 upper, vec2 extent) {
   Box box;
   box.face = face;
   box.lower = clamp(lower, vec2(0.0), vec2(table.size));
   box.upper = clamp(upper, vec2(0.0), vec2(table.size));
   const vec2 inside = box.upper - box.lower;
-  // Exact comparison: for the part beside the map, an exponential of the whole depth would amplify the last digit of a
-  // fraction.
+  // Exact comparison: a fraction off by its last digit would add a part outside the map, and an exponential of the
+  // whole depth would amplify it.
   const bool whole = box.lower == lower && box.upper == upper;
-  // Beside the window of a map there is no caster; beside a face of a hemicube there are other faces, and the part on
+  // Outside the window of a map there is no caster. Outside a face of a hemicube there are other faces, and the part on
   // this face is assumed to be representative of them.
   box.inside = inside.x > 0.0 && inside.y > 0.0 ? (alone && !whole ? inside.x * inside.y / (extent.x * extent.y) : 1.0)
                                                 : 0.0;
@@ -184,10 +184,10 @@ struct Image {
 #ifdef FITTED_FACES
 #include "maps/products/prefilter_fitted.glsl"
 #else
-// Window of texels of one face, as requested by a look-up: it may extend beside the map.
+// Window of texels of one face, as requested by a look-up: it may extend outside the map.
 struct Window {
   uint face;   // of the light point
-  bool alone;  // the face is the whole side of the light's plane: beside the face there is no caster
+  bool alone;  // the face is the whole side of the light's plane: outside the face there is no caster
   vec2 lower, upper, extent;
 };
 
@@ -199,7 +199,8 @@ Image image_of(Window window) {
 }
 
 // Returns the light's box as seen from the receiver d through height z (> 0): around the receiver's own direction, half
-// as wide as half_box (1/z - 1/|d.z|) in x/z and y/z, but no narrower than a texel: then the receiver's own texel.
+// as wide as half_box (1/z - 1/|d.z|) in x/z and y/z. It is no narrower than a texel: a box of this width is the
+// receiver's own texel.
 Window window_through(LightView view, vec3 d, vec2 half_box, float z) {
   const float height = abs(d.z);
   const FaceHit hit = face_hit(view, d);
@@ -228,7 +229,7 @@ Window window_of_texels(LightView view, vec3 d, uint texels) {
   return Window(side.first_face + hit.face, side.face_count == 1, first, first + float(texels), vec2(float(texels)));
 }
 
-// Returns the receiver's height less the bias: as in blocks(), bias texels in depth, more on a slope.
+// Returns the receiver's height less the bias: `bias` texels in depth, and more on a slope, as in blocks().
 float height_less_bias(LightView view, vec3 d, vec3 m) {
   const FaceHit hit = face_hit(view, d);
   const vec2 texels = (hit.upper - hit.lower) / float(lookup.size);

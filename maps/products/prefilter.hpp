@@ -36,7 +36,7 @@ struct PrefilterOptions {
   bool of_bits = false;            ///< texels are words of bits; else the maps' depths
   bool slope = false;              ///< squares of layers include the effect of the surface's slope within a texel
   std::uint64_t buffer_bytes = 0;  ///< size limit of a buffer; 0: the device's limit
-  bool is_reduced = false;         ///< the size of maps is a default reduced to what buffers hold
+  bool is_reduced = false;         ///< the size of maps is the default, reduced to what buffers can hold
 };
 
 /// Counter of lights whose maps have a reduced size (PrefilterOptions::is_reduced).
@@ -46,8 +46,8 @@ inline constexpr const char* kReducedMaps = "reducedMaps";
 /// size by a number of fetches independent of the window (maps/products/prefilter.glsl).
 ///
 /// Tables sum unsigned integers modulo 2³². With b = ⌊32 − 2 log₂ size⌋ bits a texel no box overflows, so a value of
-/// more binary digits is cut into limbs of b bits, each with a table of its own: sums of 24 digits, or of the 150
-/// needed by an exponential, are exact at any size.
+/// more binary digits is cut into limbs of b bits, each with a separate table: sums of 24 digits, or of the 150 needed
+/// by an exponential, are exact at any size.
 class Prefilter final : public MapProduct {
  public:
   /// Sources of texels. All are recorded before this product.
@@ -69,7 +69,7 @@ class Prefilter final : public MapProduct {
 
  private:
   [[nodiscard]] std::uint64_t buffer_bytes() const;
-  [[nodiscard]] std::vector<std::uint32_t> value_constants() const;  ///< of prefilter_values.glsl
+  [[nodiscard]] std::vector<std::uint32_t> value_constants() const;  ///< constants of prefilter_values.glsl
   void record_values(render::Commands& commands, const MapSet& maps, const gpu::PrefilterValuesPush& push);
   void record_levels(render::Commands& commands, const gpu::PrefilterTable& table) const;
 
@@ -81,7 +81,7 @@ class Prefilter final : public MapProduct {
   SummedAreas sums_;
   std::unique_ptr<render::Buffer> table_;
   std::array<std::unique_ptr<render::Buffer>, gpu::kPrefilterBuffers> images_;
-  std::array<std::uint32_t, gpu::kPrefilterBuffers> blocks_{};  ///< in each buffer
+  std::array<std::uint32_t, gpu::kPrefilterBuffers> blocks_{};  ///< number of blocks in each buffer
 };
 
 /// Layout of a look-up's data, for maps of this size. Empty if more is needed than `kPrefilterBuffers` buffers of

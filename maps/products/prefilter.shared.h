@@ -10,7 +10,7 @@ namespace penumbra::maps::gpu {
 #endif
 
 // Functions of a texel's height t, 0 at the nearest caster and 1 at the deepest receiver, all of them in [0, 1].
-const uint kLayer = 0;    // x = clamp(a t - b, 0, 1); its square is about the middle, (x - 1/2)^2
+const uint kLayer = 0;    // x = clamp(a t - b, 0, 1); its square is taken about the middle: (x - 1/2)^2
 const uint kRising = 1;   // exp(a (t - 1))
 const uint kFalling = 2;  // exp(-a t)
 const uint kSine = 3;     // 1/2 + sin(a t) / 2
@@ -45,8 +45,8 @@ struct PrefilterTable {
 struct PrefilterLevelPush {
   uint scheme, size, faces;
   uint level;  // level to be computed
-  uint from;   // begin of the previous level in a block
-  uint to;     // begin of this level
+  uint from;   // beginning of the previous level in a block
+  uint to;     // beginning of this level
   uint block, blocks;
 };
 

@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // Windows around receivers on faces fitted to the view of a camera, or on paraboloids: part of prefilter.glsl.
 //
-// Through a height, the light is a rectangle of directions (x/z, y/z). On an even face that is a rectangle of texels,
-// too. On a warped face it is turned and bent, and its texels have different shares of the light. So the window remains
-// a rectangle of directions, and its parts, which have equal shares of the light, are looked up one by one: each is
-// replaced by the box with the second moments of its image, as a light that is no rectangle is by its box
-// (map_frame.hpp). Parts are cut in four until they are boxes to within half a texel.
+// Through a height, the light is a rectangle of directions (x/z, y/z). On a face that is not warped this is a rectangle
+// of texels, too. On a warped face its image is turned and bent, and texels have different shares of the light. So the
+// window remains a rectangle of directions. Its parts have equal shares of the light and are looked up one by one: each
+// is replaced by the box with the second moments of its image, as a light that is not a rectangle is replaced by its
+// box (map_frame.hpp). Parts are cut in four until they are boxes to within half a texel.
 
-// Face of a window of directions.
+// Value of Window::face for a window of directions.
 const uint kDirections = 0xffffffffu;
 
 struct Window {
-  uint face;   // whose texels the window is made of; or kDirections: it is one of directions
+  uint face;   // face whose texels the window consists of; kDirections: the window is a rectangle of directions
   uint side;   // of the light's plane
-  uint alone;  // the receiver's only face on this side: beside it there is no caster; or the number of faces
+  uint alone;  // index of the receiver's only face on this side, outside which there is no caster; the number of faces
+               // if there are several
   vec2 lower, upper, extent;
 };
 
@@ -33,9 +34,9 @@ vec3 direction_in(Window window, vec2 at) {
   return window.face == kDirections ? vec3(at, 1.0) : face_direction(fitted_faces[window.face], at / float(table.size));
 }
 
-// Finds, on face `number`, the box with the second moments of a window's image: of the parallelogram with half sides p
-// and q they are (p p^T + q q^T) / 3, and of a box with half sides h they are h h / 3. Returns the largest distance, in
-// texels, of one of the image's corners from the box's; infinite if the image passes the face's horizon.
+// Finds, on face `number`, the box with the second moments of a window's image. The moments of a parallelogram with
+// half sides p and q are (p p^T + q q^T) / 3, those of a box with half sides h are h h / 3. Returns the largest
+// distance, in texels, of one of the image's corners from the box's; infinite if the image passes the face's horizon.
 float moments_on(Window window, uint number, out vec2 centre, out vec2 extent) {
   centre = 0.5 * (window.lower + window.upper);
   extent = window.extent;
@@ -61,7 +62,7 @@ float moments_on(Window window, uint number, out vec2 centre, out vec2 extent) {
 
 const float kFits = 0.5;  // texels
 
-// Returns the image of a window, or of a part, on the face of its middle.
+// Returns the image of a window, or of a part, on the face that contains its middle.
 Image image_of(Window window) {
   const uint none = table_of_faces.count;
   const vec3 middle = direction_in(window, 0.5 * (window.lower + window.upper));
@@ -81,7 +82,8 @@ Image image_of(Window window) {
   const float off = moments_on(window, number, image.centre, image.extent);
   image.fits = off <= kFits;
   vec2 extent = image.extent;
-  if (!(off < float(table.size))) {  // at the horizon: the middle's texel, of the smallest parts
+  if (!(off < float(table.size))) {  // at the face's horizon the smallest parts are replaced by the texel of their
+                                     // middle
     image.centre = floor(place * float(table.size)) + 0.5;
     image.extent = vec2(table.size);
     extent = vec2(1.0);
@@ -102,8 +104,8 @@ uint own_face(vec3 e, uint side, uint alone, out vec2 place) {
 }
 
 // Returns the light's box as seen from the receiver d through height z (> 0): around the receiver's own direction, half
-// as wide as half_box (1/z - 1/|d.z|) in x/z and y/z. A window that is a box of the receiver's face is one of texels: no
-// narrower than a texel, and then the receiver's own texel.
+// as wide as half_box (1/z - 1/|d.z|) in x/z and y/z. If this window is a box of the receiver's face, it is returned as
+// a window of texels, no narrower than a texel: a window of this width is the receiver's own texel.
 Window window_through(LightView view, vec3 d, vec2 half_box, float z) {
   const float height = abs(d.z);
   const uint side = d.z < 0.0 ? 1 : 0, alone = lone_face(side);
@@ -130,7 +132,7 @@ Window window_of_texels(LightView view, vec3 d, uint texels) {
   return Window(own, side, alone, first, first + float(texels), vec2(float(texels)));
 }
 
-// Returns the receiver's height less the bias: as in blocks(), bias texels in depth, more on a slope.
+// Returns the receiver's height less the bias: `bias` texels in depth, and more on a slope, as in blocks().
 float height_less_bias(LightView view, vec3 d, vec3 m) {
   const uint side = d.z < 0.0 ? 1 : 0;
   const vec3 e = vec3(d.xy, abs(d.z));

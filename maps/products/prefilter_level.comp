@@ -24,8 +24,8 @@ void main() {
   const uint block = i / texels * push.block, texel = i % texels;
   const uint x = texel % size, y = texel / size % size, face = texel / (size * size);
   const uint source = block + push.from + face * before * before;
-  // Beside the border a pyramid has no further texels, and its mean is of the existing ones. Windows of an N-buffer
-  // that extend beyond the border are never used.
+  // Beyond the border a pyramid has no texels: the mean is that of the existing ones. Windows of an N-buffer that
+  // extend beyond the border are never used.
   const uint step = pyramid ? 1 : 1u << (push.level - 1);
   const uint x0 = pyramid ? 2 * x : x, y0 = pyramid ? 2 * y : y;
   const uint x1 = min(x0 + step, before - 1), y1 = min(y0 + step, before - 1);

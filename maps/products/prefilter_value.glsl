@@ -22,14 +22,14 @@ float prefilter_value(PrefilterValue value, float t) {
   }
 }
 
-// Returns the heights mapped to 0 and 1: slightly less than that of the nearest caster, so that a single plane has a
-// range, too; and exactly that of the deepest receiver: the value of a texel without a caster is no farther than this
-// receiver. With a larger value, an exponential would count the texel as more than lit.
+// Returns the heights mapped to 0 and 1. The first is slightly less than that of the nearest caster, so that a single
+// plane has a range, too. The second is exactly that of the deepest receiver: the value of a texel without a caster is
+// no farther than this receiver. With a larger value, an exponential would count the texel as more than lit.
 vec2 height_ends(float nearest, float deepest) {
   return vec2(nearest * (1.0 - 1.0 / 1024.0), max(deepest, nearest));
 }
 
-// Returns the height in [0, 1] between these.
+// Returns a height relative to height_ends(), in [0, 1].
 float normalised_height(float height, float nearest, float deepest) {
   const vec2 ends = height_ends(nearest, deepest);
   return clamp((height - ends.x) / (ends.y - ends.x), 0.0, 1.0);

@@ -5,7 +5,7 @@
 // texel.
 
 layout(local_size_x = 64) in;
-// Constants: devices that do not skip what a condition leaves out would compute it for each value.
+// Constants: devices that do not skip code excluded by a condition would otherwise run it for each value.
 layout(constant_id = 0) const uint kScheme = kTable;
 layout(constant_id = 1) const uint kOfBits = 0;  // 1: texels are words of bits; else depths
 layout(constant_id = 2) const uint kSlope = 0;   // 1: squares of layers include the slope's part
@@ -54,7 +54,7 @@ float height_of(uint texel, float depth) {
 }
 
 // Returns the change of height from texel to texel across a row and up a column: the smaller of the differences to the
-// neighbours on either side, so that an outline is no slope.
+// neighbours on either side, so that an outline does not count as a slope.
 vec2 slope_of(uint texel, float t) {
   const ivec2 at = ivec2(texel % table.size, texel / table.size % table.size);
   vec2 slope = vec2(0.0);

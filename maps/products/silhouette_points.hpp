@@ -15,9 +15,9 @@ namespace penumbra::maps {
 
 /// Silhouette point of a cell between the texels of a map (Sen, Cammarano, Hanrahan 2003). A cell has the centres of
 /// four texels as its corners; there is one more cell than texels on either side, and the outermost corners do not
-/// exist. Of an edge that separates a cell's corners one point is kept, from 0 to 1 across the cell: the edge's end, if
-/// inside, else its intersection with the diagonals, or the middle of both intersections. Of several edges the nearest
-/// to the light counts.
+/// exist. For an edge that separates a cell's corners one point is kept, from 0 to 1 across the cell: the edge's end,
+/// if inside, else its intersection with the diagonals, or the middle of both intersections. If there are several
+/// edges, the nearest to the light counts.
 struct SilhouettePoint {
   glm::dvec2 at{0.5};
   double depth = 0;  ///< along the face's axis; 0: no outline
@@ -31,8 +31,8 @@ struct SilhouetteEnd {
 void add_silhouette(const SilhouetteEnd& one, const SilhouetteEnd& other, std::uint32_t count,
                     std::vector<SilhouettePoint>& cells);
 
-/// Silhouette points of all casters but the light's own body, as seen from the light's centre (mesh::silhouette_edges:
-/// any soup), on the device: two floats for each cell.
+/// Silhouette points of all casters but the light's own body, as seen from the light's centre (mesh::silhouette_edges,
+/// for any triangles), on the device: two floats for each cell.
 class SilhouettePoints final : public MapProduct {
  public:
   explicit SilhouettePoints(const render::Device& device) : device_(&device) {}

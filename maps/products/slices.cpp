@@ -99,7 +99,7 @@ gpu::SlicePlanes slice_planes(const MapSet& maps, SliceRule rule, std::uint32_t 
         corners += 1;
         sum += sign * seen.height / 3;
       }
-      // For casters that are all seen edge-on, the mean of the triangles' heights.
+      // If all casters are seen edge-on, the mean of the triangles' heights is used.
       const double mean = area > 0 ? moment / area : corners > 0 ? sum / corners : 1.0;
       set(0, mean, std::numeric_limits<float>::max());
       continue;

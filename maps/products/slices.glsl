@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Marks the slice that contains a surface at a texel's centre (Eisemann and Décoret 2006). Any number of surfaces: bits
-// are added in any order. `planes` and `bits` are declared by the shader.
+// Marks the slice that contains a surface at a texel's centre (Eisemann and Décoret 2006). A texel may have any number
+// of surfaces: their bits are added in any order. `planes` and `bits` are declared by the shader.
 
 PUSH_CONSTANTS SlicePush { SlicesPush push; };
 

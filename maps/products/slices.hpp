@@ -17,16 +17,16 @@
 namespace penumbra::maps {
 
 enum class SliceRule : std::uint8_t {
-  /// From the nearest caster to the deepest, or to the deepest receiver if that is nearer; equally thick. Surfaces in a
-  /// slice are moved to its far plane (Eisemann and Décoret 2006).
+  /// Equally thick slices from the nearest caster to the deepest, or to the deepest receiver if that is nearer.
+  /// Surfaces in a slice are moved to its far plane (Eisemann and Décoret 2006).
   equal,
   /// One slice, with all casters except the ground (ground_of), at their mean height (Soler and Sillion 1998).
   one_plane,
 };
 
-/// Returns the object that receives but does not shade where a method separates the two: none if some receiver casts no
-/// shadow; else the object whose receiving triangles, seen from the light's plane, are largest. kNoObject if there is
-/// none.
+/// Returns the object that receives but does not cast shadow in a method that separates the two. If some receiver casts
+/// no shadow, there is no such object; else it is the object whose receiving triangles, seen from the light's plane,
+/// are largest. kNoObject if there is none.
 inline constexpr std::uint32_t kNoObject = 0xffffffffU;
 std::uint32_t ground_of(const visibility::SceneFloats& scene, const visibility::Light& light, const LightBasis& basis);
 
@@ -37,8 +37,8 @@ struct SliceOptions {
   SliceRule rule = SliceRule::equal;
   std::uint32_t count = 1;
   Rasteriser rasteriser = Rasteriser::vulkan;
-  /// Depth by which the nearest of a texel's surfaces is sorted: the begin of its shadow (shadow_depths.glsl); surfaces
-  /// behind it are unchanged. The maps then have two layers.
+  /// Depth by which the nearest of a texel's surfaces is sorted: the depth at which its shadow begins
+  /// (shadow_depths.glsl); surfaces behind it are unchanged. The maps then have two layers.
   DepthUse depth = DepthUse::first;
   double bias = 0;  ///< number of texels by which the look-up reduces receivers' heights
 };
@@ -72,7 +72,7 @@ class Slices final : public MapProduct {
   void upload(const MapSet& maps);
   /// Uploads the casters, except the ground, with or without holes.
   void upload_casters(const MapSet& maps, std::uint32_t ground, const HoleSurfaces* surfaces);
-  /// Returns all faces, as push constants of slices.frag, with texels from `first` of the words on.
+  /// Returns all faces as push constants of slices.frag; `first` is the index of a face's first texel among the words.
   [[nodiscard]] std::vector<gpu::SlicesPush> faces_of(const MapSet& maps) const;
   void draw_by_opengl(const MapSet& maps, const gpu::SlicePlanes& planes) const;
   /// Moves the nearest surfaces to the slices where their shadows begin.
@@ -83,8 +83,8 @@ class Slices final : public MapProduct {
   std::optional<Passes> passes_;               // used with Vulkan
   std::optional<OpenGlPasses> opengl_passes_;  // used with OpenGL
   std::optional<render::ComputePass> moved_;
-  std::optional<CasterMaps> blocker_maps_;          ///< maps of all casters except the ground,
-  std::unique_ptr<render::Buffer> blocker_depths_;  ///< in two layers
+  std::optional<CasterMaps> blocker_maps_;          ///< maps of all casters except the ground
+  std::unique_ptr<render::Buffer> blocker_depths_;  ///< depths of blocker_maps_, in two layers
   render::Buffer planes_;
   std::vector<Casters> casters_;
   std::optional<render::Buffer> surfaces_;  // HoleSurfaces::words

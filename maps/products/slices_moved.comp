@@ -9,7 +9,8 @@
 // invocation for each texel.
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Layers { float layers[]; };  // the first, then the second
+layout(scalar, binding = 0) readonly buffer Layers { float layers[]; };  // depths of the first layer, then of the
+                                                                         // second
 layout(scalar, binding = 1) readonly buffer Views { LightView views[]; };
 layout(scalar, binding = 2) readonly buffer Planes { SlicePlanes planes; };
 layout(scalar, binding = 3) buffer Bits { uint bits[]; };

@@ -2,7 +2,7 @@
 // Computes V as the mean of hard shadows from points of the light: Heckbert and Herf 1997, "Simulating soft shadows
 // with graphics hardware". Departures: the paper draws the blended shadow into a texture for each receiver polygon;
 // here each light sample has a shadow map (Williams 1978), looked up at the view samples, and the result is kept as a
-// bit of its own.
+// separate bit.
 
 #include "maps/sampling/methods.hpp"
 

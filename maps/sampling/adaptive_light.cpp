@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes V as the weighted mean of hard shadows from an adaptive set of light points: Schwärzler, "Real-time soft
-// shadows with adaptive light source sampling": shadow maps from the corners of the light; two maps of opposite corners
-// are compared at the view samples, and where too many differ the cell is split. Departures: pixels that are below the
-// horizon of both points do not count, every tap is compared with the receiver's plane (taps.glsl), and the number of
-// pixels that may differ is a fraction of the pixels (option shareOf: of a map's texels, as published, with which small
-// pictures would have four maps).
+// shadows with adaptive light source sampling". Shadow maps are rendered from the corners of the light; two maps of
+// opposite corners are compared at the view samples, and if they differ at too many of them, the cell is split.
+// Departures: pixels that are below the horizon of both points do not count, every tap is compared with the receiver's
+// plane (taps.glsl), and the number of pixels that may differ is a fraction of the pixels (option shareOf: of a map's
+// texels, as published, with which small pictures would have four maps).
 
 #include "maps/sampling/methods.hpp"
 
@@ -30,8 +30,8 @@ enum class CompareIn : std::uint8_t { camera, light };
 
 constexpr visibility::IntegerOption kLevels{"levels", 0, 6, 3,
                                             "largest number of times that a cell of the light is halved"};
-// Fraction of all pixels, so that pictures of any size are refined alike. With 0.02, 14 of 81 maps are left of the
-// paper's figure 1, and V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
+// Fraction of all pixels, so that pictures of any size are refined alike. With 0.02, 14 of the 81 maps of the paper's
+// figure 1 are left, and V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
 constexpr visibility::RealOption kDifferingShare{
     "epsilon", 0, 1, 0.02, "share of differing pixels from which a cell is split; shareOf: of which number"};
 constexpr visibility::RealOption kGamma{"gamma", 0, 1, 0.02,

@@ -26,7 +26,7 @@ struct AdaptiveChoices {
   std::uint32_t levels, most_maps;
   double epsilon, gamma;
   bool gamma_of_range;  ///< gamma is a fraction of the depth range of a map; else of the compared heights
-  std::uint32_t taps;   ///< a look-up's texels on a side: windows hold casters up to this distance beside the receivers
+  std::uint32_t taps;   ///< a look-up's texels on a side: windows hold casters up to this distance from the receivers
   LightTree::Shape form;
   PointWeights weights;
   bool share_of_map;  ///< epsilon is a fraction of a map's texels; else of all compared receivers
@@ -49,7 +49,7 @@ class AdaptiveMaps {
   AdaptiveMaps(const render::Device& device, const MapOptions& map, const AdaptiveChoices& choices);
 
   void set_scene(const visibility::SceneFloats& scene);
-  /// Sets the light, without maps so far. Borrows `light`.
+  /// Sets the light, which then has no maps yet. Borrows `light`.
   void set_light(const visibility::Light& light);
   /// Restarts the refinement, for other receivers.
   void restart();

@@ -102,7 +102,7 @@ void LightTree::split(std::span<const std::uint8_t> differs, std::size_t most) {
 std::vector<double> LightTree::weights(PointWeights kind, const Light& light) const {
   PENUMBRA_ASSERT(level_.empty(), "weights of a tree with {} open cells", level_.size());
   struct Around {
-    std::uint32_t depth = 0;  ///< of the deepest cell
+    std::uint32_t depth = 0;  ///< depth of the deepest cell
     double area = 0, light = 0;
   };
   std::vector<Around> around(points_.size());

@@ -2,7 +2,7 @@
 // Texel in a direction, for look-ups of lists in place of depths, or of several buffers of maps. Included after
 // taps.glsl.
 struct Texel {
-  uint index;      // in the buffer of maps; kNoTexel beside all maps
+  uint index;      // in the buffer of maps; kNoTexel outside all maps
   vec3 direction;  // to the texel's centre, of length one along the face's axis
   float along;     // length of d along the face's axis
   int axis;        // the face's axis: 0, 1, 2

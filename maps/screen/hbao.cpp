@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes horizon-based ambient occlusion: Bavoil, Sainz and Dimitrov 2008, "Image-space horizon-based ambient
-// occlusion": along directions of the picture the highest horizon h is found; V = 1 - 1/2π ∫ (sin h - sin t) W dθ, t
-// the angle of the surface's own tangent, both over the picture's plane, each rise of the horizon weighted by the
-// distance of its cause. Departures: the tangent is taken along the direction of the found sample, not along the
-// direction of the search: the two differ in perspective, and a plane would shade itself.
+// occlusion". Along directions of the picture the highest horizon h is found; V = 1 - 1/2π ∫ (sin h - sin t) W dθ, with
+// t the angle of the surface's own tangent. Both angles are measured from the picture's plane, and W weights each rise
+// of the horizon by the distance of its cause. Departure: the tangent is taken along the direction of the found sample,
+// not along the direction of the search: in perspective these differ, and a plane would shade itself.
 
 #include "maps/screen/methods.hpp"
 

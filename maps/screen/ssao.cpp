@@ -42,7 +42,7 @@ glm::dvec3 spread(std::uint32_t i, std::uint32_t count) {
   return {across * std::cos(turn), across * std::sin(turn), z};
 }
 
-/// Returns the digits of i in base 2, mirrored at the point.
+/// Returns the radical inverse of i: its digits in base 2, mirrored at the point.
 double mirrored(std::uint32_t i) {
   double value = 0, digit = 0.5;
   for (; i != 0; i >>= 1, digit /= 2) value += digit * (i & 1U);

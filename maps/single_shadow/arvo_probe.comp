@@ -4,8 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/host/look_up.glsl"
 
-// Returns the input of arvo.cpp's flood: 1 where the light's centre is seen, 0 below the horizon, and in the hard
-// shadow minus the height of its caster over the light's plane.
+// Returns the input of arvo.cpp's flood: 1 where the light's centre is seen, 0 below the horizon; in the hard shadow,
+// the height of the shadow's caster over the light's plane, with a minus sign.
 float visibility_of(LightView view, vec3 d, vec3 m) {
   if (!(dot(m, d) > 0.0)) return 0.0;
   if (!hard_shadow(view, 0, lookup.size, d, m, lookup.bias)) return 1.0;

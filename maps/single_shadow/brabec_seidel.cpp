@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Searches a map for the nearest border of the hard shadow: Brabec and Seidel 2002, "Single sample soft shadows using
 // depth maps", as described in the course notes of Eisemann et al. (2009, section 5.2.1). Departures: the half penumbra
-// on either side is that of a light of its disk's radius, where the paper scales by hand; distances are to a texel's
-// border.
+// on either side is that of a disk with the light's area, where the paper scales by hand; distances are measured to a
+// texel's border.
 
 #include "maps/single_shadow/methods.hpp"
 

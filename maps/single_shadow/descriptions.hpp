@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-/// Common part of the descriptions of this room's methods: V from one shadow map of a planar light's centre, left out
-/// of comparisons that do not name them.
+/// Common part of the descriptions of this room's methods: V from one shadow map of a planar light's centre.
+/// Comparisons leave these methods out unless they name them.
 namespace penumbra::maps {
 
 struct SingleShadow {

@@ -24,7 +24,7 @@ struct FloodResult {
 };
 
 /// Grows borders of the hard shadow between neighbouring pixels, a pixel at a time, inward and outward to the extent of
-/// penumbrae (Arvo et al. 2004); each pixel keeps the nearest border point of its neighbours'. `light`: the light's
+/// penumbrae (Arvo et al. 2004); each pixel keeps the nearest of its neighbours' border points. `light`: the light's
 /// radius.
 FloodResult flood(std::span<const FloodPixel> pixels, std::uint32_t width, double light);
 

@@ -7,15 +7,15 @@
 #include "maps/host/look_up.glsl"
 #include "maps/single_shadow/falloff.glsl"
 
-// Returns V (Kirsch and Doellner 2003): 1 outside of the hard shadow; inside, less the farther its border is in the
-// shadow width map, and 0 where a light of this radius behind the occluder is hidden.
+// Returns V (Kirsch and Doellner 2003): 1 outside of the hard shadow. Inside, V falls with the distance of the border
+// in the shadow width map, down to 0 where a light of this radius behind the occluder is hidden.
 
 layout(scalar, binding = 4) readonly buffer Widths { float widths[]; };
 
-const float kFarInside = 1e20;  // WidthMap has no distance there
+const float kFarInside = 1e20;  // larger widths: WidthMap has no distance there
 
-// Returns the distance of the receiver from the border, interpolated between the four nearest texels: a texel's centre
-// is half a texel farther from white than its border.
+// Returns the distance of the receiver from the border, interpolated between the four nearest texels. Half a texel is
+// subtracted: WidthMap measures to the centre of a white texel, which is half a texel behind the border.
 float width_at(MapFace face, vec2 at) {
   const vec2 most = vec2(float(lookup.size - 1)), first = floor(at - 0.5), share = at - 0.5 - first;
   float width = 0.0;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks up a map of distances to the border of the hard shadow: Kirsch and Döllner 2003, "Real-time soft shadows using
 // a single light sample", as described in the course notes of Eisemann et al. (2009, section 5.2.1). Departures:
-// distances are Euclidean, computed in two passes; black are all casters except the ground (as in convolution; the
-// paper takes occluders and receivers as input); the extent of light into the shadow follows from the light's radius.
+// distances are Euclidean, computed in two passes; all casters except the ground count as occluders (as in convolution;
+// the paper takes occluders and receivers as input); the extent of light into the shadow follows from the light's
+// radius.
 
 #include "maps/single_shadow/methods.hpp"
 
@@ -29,7 +30,7 @@ visibility::MeshVerdict kirsch_doellner_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("the hard shadow of the light's centre, with penumbrae inside of it alone", mesh);
 }
 
-/// Shadows have no penumbra where the width map cannot separate occluders from receivers.
+/// Returns a warning if the width map cannot separate occluders from receivers: shadows then have no penumbra.
 std::optional<std::string> kirsch_doellner_warning(const visibility::MethodOptions& /*options*/,
                                                    const std::map<std::string, std::uint64_t>& counters) {
   const auto count = [&](const char* name) {

@@ -38,8 +38,8 @@ bool keep_in_front(glm::dvec3& a, glm::dvec3& b, double near) {
   return true;
 }
 
-/// Returns the edge of the outer part; nullopt if the edge is seen as a point. `left`: the outer side is to the left of
-/// the direction from a to b, x to the right and y up.
+/// Returns the edge with the direction of its outer part; nullopt if the edge is seen as a point. `left`: the outer
+/// side is to the left of the direction from a to b, with x to the right and y up.
 std::optional<gpu::OuterEdge> outer_edge(const glm::dvec3& a, const glm::dvec3& b, bool left, OuterForm form,
                                          double radius) {
   const glm::dvec2 direction = seen(b) - seen(a);
@@ -49,7 +49,8 @@ std::optional<gpu::OuterEdge> outer_edge(const glm::dvec3& a, const glm::dvec3& 
   const glm::dvec2 beside = left ? glm::dvec2(-along.y, along.x) : glm::dvec2(along.y, -along.x);
   glm::dvec2 outward = beside;
   if (form == OuterForm::cones) {
-    // The line that touches both circles: their radii differ by the same amount wherever both cones are cut.
+    // Direction of the line that touches both circles: wherever both cones are cut, their radii differ by the same
+    // amount.
     const double lean = std::clamp(radius * (1 / a.z - 1 / b.z) / length, -1.0, 1.0);
     outward = lean * along + std::sqrt(1 - lean * lean) * beside;
   }

@@ -19,9 +19,9 @@ enum class OuterForm : std::uint8_t {
               ///< 2003)
 };
 
-/// Silhouette edges of all casters but the light's own body, as seen from the light's centre (mesh::silhouettes: any
-/// soup), on one side of its plane: in the light's basis, z from its plane; parts nearer to the plane than `near` are
-/// cut off. An edge seen as a point is left out.
+/// Silhouette edges of all casters but the light's own body, as seen from the light's centre (mesh::silhouette_edges,
+/// for any triangles), on one side of its plane: in the light's basis, with z the distance from its plane. Parts nearer
+/// to the plane than `near` are cut off. An edge seen as a point is left out.
 struct OuterEdges {
   std::array<std::vector<gpu::OuterEdge>, 2> sides;  ///< where the light's normal points, and behind
   /// Mean height over the light's plane of the edges that do not belong to the ground (ground_of), weighted by their

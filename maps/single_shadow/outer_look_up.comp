@@ -40,7 +40,7 @@ float visibility_of(LightView view, vec3 d, vec3 m) {
     const vec2 cell = clamp(first + vec2(k & 1, k >> 1), vec2(0.0), most);
     v[k] = light_of(view, face, uvec2(cell), d, m, hit.f.z);
   }
-  // Exact where all four values are equal.
+  // This form is exact where all four values are equal.
   const float lower = v[0] + (v[1] - v[0]) * share.x, upper = v[2] + (v[3] - v[2]) * share.x;
   return clamp(lower + (upper - lower) * share.y, 0.0, 1.0);
 }

@@ -25,7 +25,7 @@ constexpr std::array<std::uint32_t, 2> kNothing{0x3f800000U, 0x7f800000U};  // 1
 
 /// Returns the push constants of a face of one side of a view, in the light's basis with z from its plane.
 gpu::OuterPush outer_push(const gpu::LightView& view, std::uint32_t side, std::uint32_t face, std::uint32_t size) {
-  // face_of returns axes in the world; with the world's own axes as basis they are in the light's.
+  // face_of returns axes in the world; given the world's own axes as basis, it returns axes in the light's basis.
   gpu::LightView turned = view;
   turned.point = glm::vec3(0);
   LightBasis axes;

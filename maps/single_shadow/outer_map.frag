@@ -9,10 +9,10 @@
 // From each point of the silhouette a line leads outward: in (x/z, y/z) always along `outward`, or around an end in all
 // directions.
 //
-// Wyman and Hansen 2003: at depth Z a cone's line is r (1/Z_v - 1/Z) beside its vertex at depth Z_v. With Z_F the depth
-// of the cone at the texel and Z_P that of the surface seen from the light there, light is 3 c^2 - 2 c^3 of c = (Z_F -
-// Z_v) / (Z_P - Z_v); the map stores c, and the look-up computes the rest. Chan and Durand 2003: alpha = (distance) /
-// width; the map stores alpha / (1 - Z_v/Z_P).
+// Wyman and Hansen 2003: at depth Z a cone's line is at the distance r (1/Z_v - 1/Z) from its vertex at depth Z_v. With
+// Z_F the depth of the cone at the texel and Z_P that of the surface seen from the light there, V is 3 c^2 - 2 c^3 with
+// c = (Z_F - Z_v) / (Z_P - Z_v); the map stores c, and the look-up computes the rest. Chan and Durand 2003: alpha =
+// (distance) / width; the map stores alpha / (1 - Z_v/Z_P).
 
 STORAGE(1) readonly buffer Surfaces { float surfaces[]; };
 STORAGE(2) buffer Outer { uint outer[]; };  // for each texel: the least stored value, and the depth of the nearest edge

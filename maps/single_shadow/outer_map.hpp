@@ -14,16 +14,16 @@
 
 namespace penumbra::maps {
 
-/// Second map beside the one of the light's centre: for each texel, for the surface seen from the light's centre there,
-/// caster or not, its position in the penumbra of the nearest silhouette, 0 at the silhouette and 1 where all light is
-/// seen; and the least height of the edges drawn there, infinite where there are none. Drawn by triangles beside every
-/// silhouette edge, as seen from the light's centre.
+/// Second map from the light's centre. For each texel, it holds the position in the penumbra of the nearest silhouette
+/// of the surface seen there, caster or not: 0 at the silhouette and 1 where all light is seen; and the least height of
+/// the edges drawn there, infinite where there are none. Drawn by triangles beside every silhouette edge, as seen from
+/// the light's centre.
 class OuterMap final : public MapProduct {
  public:
   struct Options {
     OuterForm form = OuterForm::cones;
-    /// Width of smoothies, at distance 1 from the light's centre; 0: the light's radius over the mean height of the
-    /// silhouettes.
+    /// Width of smoothies, at distance 1 from the light's centre; 0: the light's radius divided by the mean height of
+    /// the silhouettes.
     double width = 0;
     Rasteriser rasteriser = Rasteriser::vulkan;
   };
@@ -43,7 +43,7 @@ class OuterMap final : public MapProduct {
   Options options_;
   std::optional<render::RasterPass> pass_;                 // used with Vulkan
   std::optional<render::opengl::RasterPass> opengl_pass_;  // used with OpenGL
-  std::optional<CasterMaps> surface_maps_;                 ///< of all objects that cast or receive
+  std::optional<CasterMaps> surface_maps_;                 ///< maps of all objects that cast or receive
   OuterEdges edges_;
   std::vector<render::Buffer> uploaded_;  ///< edges, one buffer for each side
   std::unique_ptr<render::Buffer> surfaces_, outer_;

@@ -8,7 +8,8 @@
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 5) readonly buffer Offsets { ivec2 offsets[]; };  // sorted by length
-layout(scalar, binding = 7) buffer Counts { uint cut_searches[2]; };       // 64 bits, of which the lower are sufficient
+layout(scalar, binding = 7) buffer Counts { uint cut_searches[2]; };       // a count of 64 bits, of which the lower 32
+                                                                           // are sufficient
 
 struct Search {
   LightView view;
@@ -44,7 +45,7 @@ Search begin_search(LightView view, vec3 d, vec3 m) {
   if (!window || search.free) return search;
   const ivec2 most = ivec2(int(lookup.size) - 1);
   const vec2 range = depth_range(view.side[side].first_face, uvec2(clamp(first, ivec2(0), most)), uvec2(clamp(last, ivec2(0), most)));
-  // Largest depth of the receiver's plane at this distance: texel_blocks (neighbours.glsl).
+  // Largest depth of the receiver's plane within the radius, as in texel_blocks (neighbours.glsl).
   const float deepest = search.tap.along * (1.0 + kSteepest * search.tap.texel * float(own.radius + 1));
   search.near = max(search.near, range.x * view.far);
   search.free = search.free || search.near >= deepest;
@@ -66,14 +67,14 @@ bool search_blocks(Search search, Tap tap, ivec2 offset) {
 }
 
 // Returns the distance of a texel from the receiver, as seen from the light's centre, in (x/z, y/z): to the texel's
-// border, half a texel before its centre.
+// border, half a texel nearer than its centre.
 float distance_to(Search search, Tap tap) {
   const float half_texel = search.tap.axis == 2 && tap.axis == 2 ? 0.5 * max(search.step.x, search.step.y) : 0.0;
   return max(distance(search.seen, tap.direction.xy / abs(tap.direction.z)) - half_texel, 0.0);
 }
 
-// Returns whether all texels from this offset on are farther away than `most`. (Sideways, distances are not those on
-// the face.)
+// Returns whether all texels from this offset on are farther away than `most`. (On a sideways face, distances on the
+// face are not distances in (x/z, y/z).)
 bool is_beyond(Search search, ivec2 offset, float most) {
   return search.tap.axis == 2 && (length(vec2(offset)) - 2.0) * search.smallest_step > most;
 }

@@ -55,7 +55,7 @@ MapRecipe search_recipe(const render::Device& device, SearchMethod method, const
   recipe.products.push_back(std::make_unique<SearchOffsets>(device, offsets));
   recipe.products.push_back(std::make_unique<DepthPyramid>(device, PyramidKind::ysm));
   recipe.products.push_back(std::make_unique<WorkCounts>(device, std::vector<std::string>{"cutSearches"}));
-  // Casters that receive nothing are searched, too, up to the distance beside a receiver at which a penumbra can begin.
+  // Casters that receive nothing are searched, too, up to the distance from a receiver at which a penumbra can begin.
   recipe.beside = [](const visibility::Light& light, const LightBasis& basis) {
     return half_extent(light, basis) / half_width(light);
   };

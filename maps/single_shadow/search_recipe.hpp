@@ -23,7 +23,7 @@ struct SearchMethod {
   std::span<const std::uint32_t> look_up;
 };
 /// Returns the recipe. `ids`: surfaces of the receiver's own object do not shade the receiver; the recipe's last
-/// product then is triangles' ids.
+/// product then holds the ids of triangles.
 MapRecipe search_recipe(const render::Device& device, SearchMethod method, const visibility::ParsedOptions& parsed,
                         bool ids);
 

@@ -5,9 +5,9 @@
 #include "maps/single_shadow/width_map.shared.h"
 
 // Computes the distance of each black texel (an occluder's) from the nearest white one (Kirsch and Doellner 2003). The
-// paper filters a picture repeatedly, one texel farther each time; here distances along rows are computed, and of these
-// the least root of a sum of squares down columns, which is the exact Euclidean distance. The outside of a face is not
-// white.
+// paper filters a picture repeatedly, one texel farther each time. Here a first pass computes distances along rows; a
+// second pass combines each of these with the distance down the column, and keeps the least root of the sum of their
+// squares, which is the exact Euclidean distance. The outside of a face is not white.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Occluders { float occluders[]; };  // depths; 1 for empty texels

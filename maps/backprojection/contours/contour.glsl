@@ -30,7 +30,7 @@ layout(constant_id = 2) const bool kSearch = true;          // true: a pyramid b
 #include "maps/backprojection/levels.glsl"
 
 #ifdef SORTS_OUT
-#define OF_PACKET  // an invocation sorts a packet, with one pixel of it at a time
+#define OF_PACKET  // each invocation processes a packet, one pixel at a time
 const uint kPixels = 1;
 #else
 #define OF_PACKET shared
@@ -49,7 +49,7 @@ OF_PACKET vec2 pixel_at[kPixels];       // offset from this texel's centre, in t
 const uint kLit = 2, kBehind = 3;             // states; 0 and 1: a receiver on this side of the light's plane
 
 #ifndef SORTS_OUT
-// ---- pixels processed together: all of a packet that have cells to search, or one of them ----
+// ---- pixels processed together: all pixels of a packet that have cells to search, or one of these pixels ----
 shared uint members[kMostPacketPixels];
 shared uint member_count, together;
 shared Bounds group;
@@ -63,8 +63,8 @@ WorkNumbers done;  // work of this invocation
 
 LightView view;
 uint side_number;
-MapFace map_face;  // the current face,
-MapFace face;      // and the same with texels of the current level
+MapFace map_face;  // the current face
+MapFace face;      // the current face with texels of the current level
 uint face_number;
 float face_turn;  // -1 where a left turn in the face is a right turn on the light
 
@@ -125,7 +125,7 @@ void store_pixel(uint pixel, uint of_packet) {
   results[result] = floatBitsToUint(v);
 }
 
-// Adds to the counts of all look-ups so far, of 64 bits.
+// Adds to one of the 64-bit counts of all look-ups so far.
 void add_work(uint kind, uint amount) {
   if (amount != 0 && atomicAdd(work[2 * kind], amount) + amount < amount) atomicAdd(work[2 * kind + 1], 1);
 }
@@ -155,7 +155,7 @@ void main() {
     begin_level(0);
     store_pixel(0, pixel);
   }
-  // Where a driver ended the loops, the workgroup finds out itself.
+  // If a driver ended the loop early, the packet is listed, too: its workgroup then processes all of it.
   if (is_left || looked_at != pixels) {
     list_group();
   } else {

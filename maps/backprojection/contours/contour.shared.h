@@ -14,7 +14,7 @@ inline constexpr uint kTrivialPackets = 6;
 #else
 const uint kFlat = 0, kHierarchy = 1, kMinMax = 2;
 const uint kMostPacketPixels = 64;
-// Units of the light's area in which areas are added: a unit is a float's rounding of an area, and sums of up to 512
+// Units of the light's area in which areas are added: a unit is the rounding of an area in float, and sums of up to 512
 // lights on either side of 0 fit.
 const int kContourWhole = 1 << 22;
 const uint kWorkCounts = 8;
@@ -37,7 +37,7 @@ struct ContourLight {
   uint corners;        // number of corners of a polygon: (x, y, fraction of the light swept up to the corner) each; 0:
                        // a rectangle
   uint disk;           // 1: a disk or an ellipse
-  float inverse_area;  // of a polygon
+  float inverse_area;  // inverse of a polygon's area
   uint texture_width;  // texels of a rectangle's texture, whose table follows (radiance.glsl); 0: no texture
   uint texture_height;
 };

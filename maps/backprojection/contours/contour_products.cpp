@@ -17,14 +17,14 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// Sets the rows that take a vector of the basis's plane to multiples of the axes u and v.
+/// Sets the rows that express a vector in the basis's plane as multiples of the axes u and v.
 void set_to_unit(gpu::ContourLight& head, const glm::dvec2& u, const glm::dvec2& v) {
   const glm::dmat2 rows = glm::transpose(glm::inverse(glm::dmat2(u, v)));
   head.to_unit_x = rows[0];
   head.to_unit_y = rows[1];
 }
 
-/// Returns the table of a texture, in threes, filled up with zeros.
+/// Returns the table of a texture, in groups of three numbers, padded with zeros.
 std::vector<glm::vec3> texture_table(const visibility::LightTexture& texture) {
   const std::size_t width = texture.width, height = texture.height;
   const double whole = texture.mean_luminance * static_cast<double>(width * height);

@@ -12,8 +12,8 @@ namespace penumbra::maps {
 
 /// Planar light in the form used for clipping contours: a header and, for each corner of a polygon, counter-clockwise,
 /// its two coordinates and the fraction of the light between the ray from the centroid through the first corner and the
-/// ray through this corner. A textured rectangle has its texture's table instead (radiance.glsl), three numbers a
-/// corner.
+/// ray through this corner. A textured rectangle has its texture's table in place of corners (radiance.glsl), stored in
+/// groups of three numbers.
 struct ContourLightData {
   gpu::ContourLight head;
   std::vector<glm::vec3> corners;

@@ -50,7 +50,7 @@ MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescrip
   recipe.packet_height = choices.packet_height;
   recipe.sub_lights = choices.sub_lights;
 
-  // Pyramids hold nearest depths: these do not bound a shadow that begins behind another surface.
+  // Pyramids hold nearest depths, which do not bound a shadow that begins behind a surface other than the nearest.
   const bool pyramids = options[kDepth] == DepthUse::first;
   const Search search = pyramids ? choices.search : Search::none;
   recipe.constants = {device.limits().subgroup_size, choices.levels.levels(), search == Search::none ? 0u : 1u,

@@ -2,21 +2,21 @@
 // Contours of the texels that shade a receiver, and the area of the light hidden by them. Included by contour.comp,
 // after the state of its packet.
 //
-// The texels of a map that shade a receiver are parted from the others by marching squares on the dual grid, between
-// texels' centres; a vertex lies midway, at the depth of the texel that shades. Seen from the receiver, the vertex
-// projects to the light along the ray from the light's centre that leads away from the receiver's own direction. Hence
-// the contours hide `inside` (1 if the receiver's own direction is inside, else 0) less the signed areas beyond the
-// edges (radial.glsl):
+// Marching squares on the dual grid, between texels' centres, separate the texels of a map that shade a receiver from
+// the others; a vertex lies midway, at the depth of the texel that shades. Seen from the receiver, the vertex projects
+// to the light along the ray from the light's centre that leads away from the receiver's own direction. Hence the
+// contours hide `inside` (1 if the receiver's own direction is inside, else 0) less the signed areas beyond the edges
+// (radial.glsl):
 //   hidden = inside - sum turn * beyond
 // Texels beyond a face are empty, so contours close on every face: where a shape continues across two faces of a
 // hemicube its parts share the border, up to the difference of two texels' depths there.
 //
-// `inside` and the `turn` of edges in the receiver's own cell come from one predicate on one set of numbers: neither
-// the texels' results nor a second formula is sufficient, because the light's whole area depends on both agreeing.
+// `inside` and the `turn` of edges in the receiver's own cell come from the same predicate on the same numbers. The
+// texels' results, or a second formula, could disagree with `turn`, and V would then be wrong by the whole light.
 
-// Corners of a cell, numbered x + 2 y, and its sides: bottom, right, top, left. For each set of shading corners two
-// edges from side to side, with the shading corners on their left: from | to << 2, plus 16 if the edge exists. Corners
-// that shade across a diagonal are separate.
+// Corners of a cell are numbered x + 2 y, its sides: bottom, right, top, left. For each set of shading corners, kEdges
+// holds two edges from side to side, with the shading corners on their left: from | to << 2, plus 16 if the edge
+// exists. Corners that shade across a diagonal are separate.
 const uint kEdges[16] = uint[16](0x0000, 0x001c, 0x0011, 0x001d, 0x001b, 0x0018, 0x1b11, 0x0019, 0x0016, 0x161c, 0x0012,
                                  0x001e, 0x0017, 0x0014, 0x0013, 0x0000);
 const vec2 kSide[4] = vec2[4](vec2(0.5, 0.0), vec2(1.0, 0.5), vec2(0.5, 1.0), vec2(0.0, 0.5));
@@ -52,8 +52,8 @@ vec2 vertex_on_light(uint pixel, bool own_here, ivec2 base, uint side, float dep
   if (face.axis == 2 && own_here) return from_own(pixel, base, side) * face.texel * (depth * e.z / (e.z - depth));
   const vec2 at = face.lower + (vec2(base) + kSide[side] + 0.5) * face.texel;
   const vec3 s = onto_light(e, depth * from_face(face, vec3(at, 1.0)));
-  // Sideways, a texel's far end may be beyond the receiver's height: the vertex is then projected to the largest
-  // distance.
+  // On a sideways face, a texel's far end may be beyond the receiver's height: the vertex is then projected to the
+  // largest distance.
   return s.xy / max(s.z, kSlack * e.z);
 }
 
@@ -63,8 +63,8 @@ void add_edge(uint pixel, ivec2 base, uint edge, float depth_from, float depth_t
   const bool own_here = own_face(view.side[side_number].face_count, pixel_e[pixel]) == face_number;
   const vec2 a = vertex_on_light(pixel, own_here, base, from, depth_from);
   const vec2 b = vertex_on_light(pixel, own_here, base, to, depth_to);
-  // An edge seen beside the light hides none of it. Tested here, too, so that nodes may be skipped for this reason
-  // (all_beside_light_sideways) without a change of rounding.
+  // An edge that projects outside the light hides none of it. This test is repeated here so that nodes may be skipped
+  // for this reason (all_beside_light_sideways) without a change of rounding.
   if (face.axis != 2 && (any(greaterThan(min(a, b), light.upper)) || any(lessThan(max(a, b), light.lower)))) return;
   const float turned = own_here ? cross2(from_own(pixel, base, from), from_own(pixel, base, to)) : face_turn * cross2(a, b);
   const float turn = turned >= 0.0 ? 1.0 : -1.0;
@@ -100,7 +100,7 @@ void look_at_cell(ivec2 cell, uint first, uint members_asked) {
   }
   for (uint edges = kEdges[corners]; edges != 0; edges >>= 8) {
     ++done.edges;
-    // For each side of the cell, the corner that shades, and its depth.
+    // For the side of the cell at each end of the edge: the depth of the side's shading corner.
     vec2 depth;
     for (int end = 0; end < 2; ++end) {
       const uint side = edges >> (2 * end) & 3;

@@ -61,8 +61,8 @@ void look_below_nodes(ivec4 cells, uint first, uint members_asked) {
     const vec2 range = view.far * tree.nodes[tree.header.first[level] + (face.map * side + node.y) * side + node.x];
     const ivec2 lower = max(ivec2(at) - 1, ivec2(0)), upper = min(ivec2(at) + (1 << level) - 1, ivec2(lookup.size) - 1);
     const vec2 limits = thresholds(group, face, lower, upper, view.far);
-    // Dmitriev and Uralsky 2007 skip nodes that shade nothing; nodes completely in shadow contain no contours either,
-    // and nodes seen beside the light hide none of it.
+    // Dmitriev and Uralsky 2007 skip nodes that shade nothing. Nodes completely in shadow contain no contours either,
+    // and nodes that project outside the light hide none of it.
     if (range.x >= limits.y) continue;
     if (own.traversal == kHierarchy &&
         (range.y < limits.x || all_beside_light(group, face, lower, upper, range.x, light.lower, light.upper))) {

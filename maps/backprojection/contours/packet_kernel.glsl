@@ -4,7 +4,7 @@
 
 bool no_cells(ivec4 cells) { return cells.z < cells.x || cells.w < cells.y; }
 
-// Returns the cells touched by a kernel's texels: between any texels of the kernel, and one more before and behind.
+// Returns the cells touched by a kernel's texels: those between its texels, and one more at both ends of each axis.
 ivec4 cells_of(Kernel kernel) {
   return all(lessThanEqual(kernel.first, kernel.last)) ? ivec4(kernel.first, kernel.last + 1) : ivec4(0, 0, -1, -1);
 }
@@ -34,7 +34,7 @@ void find_own(uint pixel) {
 
 // Returns the cells of the current level that can hold contours. A block of texels has the nearest depth of its texels,
 // and an edge in a cell is between two of its four blocks: the nearest depth in a kernel is therefore the nearest of
-// all blocks that the kernel touches and of the blocks beside them.
+// all blocks that the kernel touches and of their neighbours.
 ivec4 cells_at_level(uint pixel) {
   if (level() == 0) return pixel_cells[pixel];
   const vec3 e = pixel_e[pixel];
@@ -91,9 +91,9 @@ ivec4 find_kernel_on_map(uint pixel) {
 void find_kernel(uint pixel) {
   const ivec4 cells = kLevels == kOneLevel ? find_kernel_at_level(pixel) : find_kernel_on_map(pixel);
   pixel_cells[pixel] = cells;
-  // Same extent as in texels: one less in both directions.
+  // The extent in texels is one less than the extent in cells, on both axes.
   pixel_wanted[pixel] = kLevels == kFinestLevel || no_cells(cells) ? 0.0 : wanted_level(max((cells.zw - cells.xy) >> own.level, ivec2(1)));
-  if (kLevels != kFinestLevel && !no_cells(cells)) return;  // `inside` is then decided on its levels
+  if (kLevels != kFinestLevel && !no_cells(cells)) return;  // `inside` is then decided on the levels in use
   find_own(pixel);
   if (pixel_inside[pixel] != 0 && lookup.first_row == 0) pixel_sum[pixel] += kContourWhole;
 }

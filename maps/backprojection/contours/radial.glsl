@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Part of the light that lies beyond an edge in its plane as seen from the light's centre: the sector between the rays
 // through the ends of the edge's part on the light, less the triangle (the coverage integral of Assarsson and
-// Akenine-Moller 2003, as used by Guennebaud, Barthe and Paulin 2007). An edge beside the light has none. The signed
-// sum along a closed outline is the part of the light left visible by the outline (contour.comp). Includers define
-// LIGHT first, the binding of ContourLightProduct's buffer.
+// Akenine-Moller 2003, as used by Guennebaud, Barthe and Paulin 2007). This part is empty if the edge misses the light.
+// The signed sum along a closed outline is the part of the light left visible by the outline (contour.comp). Includers
+// define LIGHT first, the binding of ContourLightProduct's buffer.
 #include "maps/backprojection/contours/contour.shared.h"
 
 layout(scalar, binding = LIGHT) readonly buffer Light {
   ContourLight light;
-  vec3 light_corners[];  // of a polygon; of a textured rectangle, three numbers of its table each (radiance.glsl)
+  vec3 light_corners[];  // corners of a polygon; for a textured rectangle, three numbers of its table each
+                         // (radiance.glsl)
 };
 
 const float kPi = 3.14159265358979;
@@ -66,10 +67,10 @@ vec2 clip_to_light(vec2 a, vec2 d) {
 
 #include "maps/backprojection/contours/radiance.glsl"
 
-// Returns the fraction of the light beyond the edge a b, in unit coordinates; with a texture, up to what adds up to
-// nothing along an outline (radiance.glsl). `turn`: 1 if the edge runs
-// counter-clockwise around the centre, else -1. The caller decides: near the centre the two differ by the whole light,
-// and `turn` must agree with the caller's count of contours around the centre.
+// Returns the fraction of the light beyond the edge a b, in unit coordinates; with a texture, without terms that cancel
+// along a closed outline (radiance.glsl). `turn`: 1 if the edge runs counter-clockwise around the centre, else -1. The
+// caller decides `turn`: near the centre the results for 1 and -1 differ by the whole light, and `turn` must agree with
+// the caller's count of contours around the centre.
 float beyond_edge(vec2 a, vec2 b, float turn) {
   const vec2 d = b - a;
   const vec2 t = clip_to_light(a, d);
@@ -77,8 +78,8 @@ float beyond_edge(vec2 a, vec2 b, float turn) {
   const vec2 from = a + t.x * d, to = t.y == 1.0 ? b : a + t.y * d;
   if (light.texture_width > 0) return radiance_beyond(from, to, turn);
   float sector = turn * (swept(to) - swept(from));
-  // A sector is at most 5/9 of the light (of a triangle, by a line through its centroid): values far from [0, 5/9] have
-  // passed the fixed ray, values just below 0 are rounding.
+  // A sector is at most 5/9 of the light (of a triangle, by a line through its centroid): values far from [0, 5/9] come
+  // from an edge that crosses the fixed ray of swept(), values just below 0 from rounding.
   sector = max(0.0, sector - floor(sector + 0.2));
   const float triangle =
       0.5 * abs(cross2(from, to)) * (light.disk != 0 ? 1.0 / kPi : light.corners == 0 ? 0.25 : light.inverse_area);

@@ -92,7 +92,7 @@ std::unique_ptr<visibility::Method> make_backproject(const render::Device& devic
   recipe.constants = {parsed[kPatchFill], parsed[kForm], search == Search::none ? 0u : 1u, levels.levels()};
   recipe.push_words = sizeof(gpu::BackprojectPush) / sizeof(std::uint32_t);
   recipe.push = [layers = parsed[kDeepestLayers], levels](const visibility::Light& light) {
-    // A sphere has the area of the disk of its radius.
+    // half_width() of a sphere is its radius: it counts with the area of the disk of its radius.
     return push_words(gpu::BackprojectPush{layers, is_body(light.kind) ? 1u : 0u, static_cast<float>(half_width(light)),
                                            levels.level, levels.budget, levels.blend ? 1u : 0u});
   };

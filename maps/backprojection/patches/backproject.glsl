@@ -37,7 +37,7 @@ Kernel kernel_at_level(MapFace face) {
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
   begin_levels();
-  // Narrowing by single texels is not valid for blocks, which are nearer.
+  // Narrowing by depths of single texels is not valid for blocks, whose depths are nearer.
   if (!kSearch || level() > 0) return kernel_within_budget(face, kernel_at_level(face));
   const Kernel kernel =
       kForm == kFormSphere ? sphere_kernel(face, lookup.size, near, true)
@@ -45,7 +45,7 @@ Kernel kernel_of(MapFace face) {
   return kernel_within_budget(face, kernel);
 }
 
-// Patches extend to the depths of their left and lower neighbours; spheres, beyond their texels.
+// Patches extend to the depths of their left and lower neighbours; spheres extend beyond their texels.
 bool nothing_hides(MapFace face, ivec2 first, ivec2 last) {
   vec2 depths;
   const ivec2 from = (first - 1) << level(), to = ((last + 1) << level()) - 1;
@@ -65,13 +65,14 @@ uint hidden_by_layer(MapFace face, uint layer, uvec2 cell) {
   return light_between(in_light_order(face, one.from), in_light_order(face, one.to));
 }
 
-// Between two levels, each level hides its fraction of the area hidden by its texels.
+// Returns a level's contribution to the hidden part: with two blended levels, its weight times the part hidden by a
+// texel.
 uint part_at_level(uint hidden) {
   if (kLevels != kLevelsByBudget || coarser_share == 0.0) return hidden;
   return uint(float(hidden) * (coarser ? coarser_share : 1.0 - coarser_share) + 0.5);
 }
 
-// Returns, of several layers, the area of the deepest that hides some of the light: adding all layers would count most
+// Returns the area of the deepest layer of a texel that hides some of the light: adding all layers would count most
 // bodies twice.
 uint hidden_by(MapFace fine, uvec2 cell) {
   const MapFace face = at_level(fine);

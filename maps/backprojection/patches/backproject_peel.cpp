@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Projects several layers of one map back onto the light: Bavoil, Callahan and Silva 2006, "Robust soft shadow mapping
-// with depth peeling". Departures: as in backproject; the midpoint of the last layer needs the layer behind, which is
-// also peeled; a block is as wide as the square root of the ratio of counts, instead of the ratio.
+// with depth peeling". Departures: those of backproject; the midpoint of the last layer needs the layer behind, which
+// is also peeled; a block is as wide as the square root of the ratio of a kernel's texels to the permitted ones,
+// instead of the ratio.
 
 #include "maps/backprojection/patches/methods.hpp"
 

@@ -11,16 +11,17 @@
 #define PYRAMID_BINDING 6
 #include "maps/backprojection/search.glsl"
 
-// Computes V as backproject does, with several layers of the map (Bavoil, Callahan and Silva 2006). Of a texel's
-// surfaces the deepest that hides some of the light counts, and no other. Where a kernel has more texels than
-// permitted, every s-th of each row and column stands for a block of s x s.
+// Computes V as backproject does, with several layers of the map (Bavoil, Callahan and Silva 2006). For each texel,
+// only the deepest surface that hides some of the light counts. Where a kernel has more texels than permitted, every
+// s-th of each row and column stands for a block of s x s.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 
 Kernel kernel_of(MapFace face) {
   float near = nearest[asked.number];
   const Kernel kernel = search_kernel(face, light.lower, light.upper, near, 1.0, 0, false, 0);
-  // The root of the ratio of counts: along each axis a block is as wide as the distance between two sampled texels.
+  // The square root of the ratio of a kernel's texels to the permitted ones: a block is as wide as the distance between
+  // two sampled texels on each axis.
   const ivec2 extent = kernel.last - kernel.first + 1;
   const float side = floor(sqrt(float(own.samples)));
   stride = own.samples == 0 ? 1 : max(int(ceil(float(max(extent.x, extent.y)) / side)), 1);

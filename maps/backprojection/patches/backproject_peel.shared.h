@@ -11,8 +11,7 @@ namespace penumbra::maps::gpu {
 struct PeelLookPush {
   uint layers;   // number of layers in use
   uint samples;  // largest number of texels for each receiver; 0: all
-  uint deepest;  // 1: of a texel's surfaces the deepest in front of the receiver counts, even if this surface misses
-                 // the light
+  uint deepest;  // 1: a texel's deepest surface in front of the receiver counts, even if this surface misses the light
 };
 
 #ifdef __cplusplus

@@ -18,7 +18,7 @@
 
 // Computes V from one bit for each light sample, so that overlapping occluders count once (Schwarz and Stamminger 2007,
 // 2008). An occluder is a texel's rectangle, a quad between the centres of four texels that all hide light, a triangle
-// of three of them where just three do, or, on a coarse level, the rectangle around a block's non-empty texels.
+// between three of them if only three do, or, on a coarse level, the rectangle around a block's non-empty texels.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
 layout(scalar, binding = 9) buffer Work { uint work[2]; };               // number of occluders processed, the lower
@@ -34,9 +34,9 @@ layout(constant_id = 3) const uint kLevels = kFinestLevel;     // kFinestLevel .
 #define LEVEL_MAPS 8
 #include "maps/backprojection/level_kernels.glsl"
 
-// Returns whether the current one of two blended levels decides light sample j. The coarser level decides for a
-// fraction `coarser_share` of the samples, evenly distributed: those whose position in [0, 1) is below coarser_share.
-// Any first n of the samples fill positions evenly: multiples of the golden ratio.
+// With two blended levels, returns whether the current level decides light sample j. The coarser level decides for a
+// fraction `coarser_share` of the samples: those whose position in [0, 1) is below coarser_share. Positions are
+// multiples of the golden ratio, so that any first n samples are evenly distributed.
 bool is_mine(uint j) {
   if (kLevels != kLevelsByBudget || coarser_share == 0.0) return true;
   return (float(j * 2654435769u >> 8) / 16777216.0 < coarser_share) == coarser;
@@ -44,7 +44,7 @@ bool is_mine(uint j) {
 
 Tap texel_at(MapFace face, uint layer, uvec2 cell) { return ask_level(face, layer, cell); }
 
-// Returns whether occluders lie between centres: quads and triangles, of a texel and its right and upper neighbours;
+// Returns whether occluders lie between centres: quads and triangles extend to the texel's right and upper neighbours;
 // patches extend to the left and lower neighbours.
 bool between_centres() { return kOccluder == kOccluderQuad || kOccluder == kOccluderTriangle; }
 
@@ -77,7 +77,7 @@ Kernel kernel_at_level(MapFace face) { return blocks_on_light(face, nearest[aske
 Kernel kernel_of(MapFace face) {
   tile_shift = padding();
   begin_levels();
-  // Narrowing by single texels is not valid for blocks, which are nearer.
+  // Narrowing by depths of single texels is not valid for blocks, whose depths are nearer.
   if (!kSearch || level() > 0) return kernel_within_budget(face, kernel_at_level(face));
   float near = nearest[asked.number];
   return kernel_within_budget(

@@ -19,8 +19,8 @@
 // Casts rays from a receiver to each light sample through the layers of the centre's map (Lischinski and Rappoport
 // 1998; Keating and Max 1999; Agrawala et al. 2000). Each texel's surface is a flat piece of the texel's extent at its
 // depth; between neighbouring texels a wall joins two pieces that are no farther apart than `gap` texels; and with
-// `solid` the space between an odd layer and the next is full. On a face, texels (a, b) / w of a ray lie on a straight
-// line along which 1 / w is linear: the ray is traversed texel by texel, each of which the ray passes between two
+// `solid` the space between an odd layer and the next is full. On a face, the positions (a, b) / w of a ray lie on a
+// straight line along which 1 / w is linear. The ray is traversed texel by texel; it passes each texel between two
 // depths.
 
 layout(scalar, binding = 4) readonly buffer Nearest { float nearest[2]; };
@@ -61,7 +61,7 @@ uint surfaces_of(MapFace face, uvec2 cell, out float depths[kMostLayers]) {
 
 bool layer_hides(MapFace face, uint layer, uvec2 cell) { return hides(texel_at(face, layer, cell)); }
 
-// Depths of a texel's surfaces just before and just behind a depth; 0 and far where there is no surface.
+// Depths of a texel's surfaces just in front of and just behind a depth; 0 and far where there is no surface.
 struct Around {
   float before, behind;
   uint before_layer, behind_layer;
@@ -82,8 +82,8 @@ Around around(float depths[kMostLayers], uint count, float depth) {
 }
 
 // Returns whether a wall between two neighbouring texels covers their border at the given depth. A wall joins the
-// surface just before the depth in one texel with the surface just behind in the other, unless either surface continues
-// nearer on its own side.
+// surface just in front of this depth in one texel (`before`) with the surface just behind it in the other (`behind`),
+// unless either surface has a nearer continuation in the other texel (`goes_on_before`, `goes_on_behind`).
 bool joined(float before, float behind, float goes_on_before, float goes_on_behind, float texel) {
   const float step = behind - before;
   return before > 0.0 && behind < asked.view.far && step <= own.gap * texel * before &&
@@ -129,7 +129,8 @@ void cut(inout vec2 part, float value, float change) {
 // next row.
 bool ray_is_stopped(MapFace face, vec2 s) {
   const vec3 start = to_face(face, asked.e), direction = to_face(face, vec3(s, 0.0)) - start;
-  // The ray ends where the map is empty; beyond the receiver's height the map is empty, too.
+  // The ray ends where the map is empty: there are no surfaces below `near_height`, and none that matter beyond the
+  // receiver's height.
   vec2 part = vec2(0.0, 1.0 - 0.99999 * near_height / asked.e.z);
   const vec2 upper = face.lower + float(lookup.size) * face.texel;
   const vec2 rows = face.lower.y + vec2(lookup.first_row, min(lookup.last_row + 2, lookup.size)) * face.texel.y;
@@ -148,14 +149,14 @@ bool ray_is_stopped(MapFace face, vec2 s) {
   const vec2 inverse = vec2(1.0 / first.z, 1.0 / last.z);
   const uint lengths = uint(ceil(max(abs(over.x) + abs(over.y), 1.0) / kLength));
 
-  // One loop for all lengths: of two nested loops left at different iterations by neighbours, Mesa 22.3 on processors
+  // One loop for all lengths: if invocations leave two nested loops at different iterations, Mesa 22.3 on processors
   // loses some iterations. A length in which the pyramid shows that nothing hides light is skipped.
   float depths[kMostLayers], last_depths[kMostLayers];
   uint count = 0;
   ivec2 cell = ivec2(0);
   vec2 next = vec2(0.0);
   float entered = 0.0, ends = 0.0;  // depth of the ray at the entry into the texel; depth at the end of the length
-  int left_to_go = -1;              // number of texels of this length beyond this one
+  int left_to_go = -1;              // number of further texels in this length
   for (uint length = 0;;) {
     if (left_to_go < 0) {
       if (length == lengths) break;

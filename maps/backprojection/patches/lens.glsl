@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Returns the area of a disk of radius r beyond a chord of length 2 half_chord at distance `away` from the centre.
-// Small areas, too, to the precision of a float.
+// Small areas, too, are accurate to the precision of a float.
 float segment(float r, float half_chord, float away) {
   const float turn = 2.0 * atan(half_chord, away);
   const float square = turn * turn;

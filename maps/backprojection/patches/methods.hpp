@@ -14,8 +14,8 @@ namespace penumbra::maps {
 std::unique_ptr<visibility::Method> make_bitmask(const render::Device& device,
                                                  const visibility::MethodOptions& options);
 
-/// Returns the description with `options`, by default without any. Callable without a Vulkan device. With few pixels
-/// (subsample) the method returns V alone.
+/// Returns the description with `options`, by default without any. Callable without a Vulkan device. If few pixels are
+/// evaluated (option `subsample`), the method returns V alone.
 visibility::MethodDescription bitmask_description(const visibility::MethodOptions& options = {});
 
 /// Makes `backproject` (Guennebaud, Barthe and Paulin 2006): texels of one map, projected back onto the light.

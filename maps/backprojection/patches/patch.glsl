@@ -4,8 +4,8 @@
 // kernel.glsl.
 //
 // On a face parallel to the light, borders at tangent alpha and depth z_s are seen at (alpha - a) f, f = z_s z / (z -
-// z_s). Sideways faces of a hemicube: rows of a texel have different heights over the light's plane, and a texel's
-// sides appear slanted; here each row's sides are where its middle sees them, so that neighbours still share borders.
+// z_s). On sideways faces of a hemicube, rows of a texel have different heights over the light's plane, and a texel's
+// sides appear slanted; here the sides of a row are taken at its middle, so that neighbours still share borders.
 
 // Returns the position on the light of a border across the first coordinate, at `at.x`, and of one across the second,
 // at `at.y`, in the texel around `middle` with depth `depth`, in the order of face coordinates.
@@ -34,7 +34,7 @@ Patch patch_of(MapFace face, vec3 e, uvec2 cell, uvec2 count, float depth) {
 }
 
 // Returns whether a point at this depth in a texel's direction is between the light's plane and the receiver. A texel
-// for which rounding gives no hides nothing.
+// for which rounding makes this false hides nothing.
 bool in_front(vec3 e, vec3 direction, float depth) { return depth * direction.z < e.z; }
 
 // Gap filling: extends the patch to the projection of the common border at the neighbour's depth, if farther out.

@@ -24,7 +24,7 @@ using visibility::MethodOptions;
 using visibility::RepairEnd;
 using visibility::RepairRun;
 
-/// Returns the options that patches have in every method.
+/// Returns `more`, and those of `options` that every method with patches has.
 MethodOptions patch_options(const MethodOptions& options, const MethodOptions& more) {
   MethodOptions chosen = more;
   for (const char* key : {"size", "bias", "depth", "receiverPlane", "rasteriser"}) chosen.emplace(key, options.at(key));
@@ -50,7 +50,7 @@ ErrorRepair shared_borders(RepairRun run) {
           .words = "patches that end where their neighbours begin (fill=shared)"};
 }
 
-/// Returns every repair except the view, combined for patches: the finest union of all layers.
+/// Returns the runs with every repair except that of the view, combined for patches: the finest union of all layers.
 std::vector<RepairRun> patches_of_one_view(const MethodOptions& options) {
   const RepairRun run =
       joined(options,

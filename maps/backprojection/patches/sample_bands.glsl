@@ -35,8 +35,8 @@ uint first_sample(uint first, uint last, float x) {
 void hide_sample(uint j);
 bool all_samples_hidden();
 
-// The light's bounding rectangle in 64 x 64 squares, and the squares that contain samples still visible: most areas
-// hidden by texels lie between samples. A row is two words.
+// The light's bounding rectangle has 64 x 64 squares; those that contain samples still visible are marked, because most
+// areas hidden by texels lie between samples. A row is two words.
 const uint kSquares = 64;
 const uint kMostRows = 8;  // largest number of rows tested: a taller area counts as containing samples
 shared uint square_words[2 * kSquares];
@@ -73,9 +73,9 @@ void mark_sample(uint j) {
   atomicOr(square_words[2 * square.y + square.x / 32], 1u << (square.x & 31));
 }
 
-// Edges a to b, b to c, c to a of a triangle in the light's plane, in homogeneous coordinates with w > 0: cross
-// products of their ends, so that a sample on the first triangle's side of a common edge is exactly not on the other
-// triangle's side, or is on both. Samples on an edge are inside.
+// Edges a to b, b to c, c to a of a triangle in the light's plane, in homogeneous coordinates with w > 0. Edges are
+// cross products of their ends, so that a common edge of two triangles has exactly opposite values for a sample: the
+// sample is on the inner side in one triangle only, or on the edge. Samples on an edge are inside.
 struct LightTriangle {
   vec3 edges[3];
 };
@@ -120,9 +120,9 @@ void hide_rectangle(vec2 a, vec2 b) {
 // Hides the samples in a triangle with corners as returned by onto_light, w > 0.
 void hide_triangle(vec3 a, vec3 b, vec3 c) {
   const vec2 p = a.xy / a.z, q = b.xy / b.z, r = c.xy / c.z;
-  // A sample at the very corner of the triangle is decided by the edges. A quotient is off by 2.5 units in its last
-  // place, a relative 1.5e-7, and around 0 no sample is farther off than the light's width: the margin is more than
-  // sixty times this error.
+  // The margin lets the edges decide about a sample at the very corner of the triangle. A quotient is off by 2.5 units
+  // in its last place, a relative 1.5e-7, and around 0 no sample is farther off than the light's width: the margin is
+  // more than sixty times this error.
   const vec2 margin = 1e-5 * (light.upper - light.lower);
   const vec2 lower = min(min(p, q), r) - margin, upper = max(max(p, q), r) + margin;
   if (!holds_samples(lower, upper)) return;

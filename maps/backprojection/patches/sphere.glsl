@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The patch as its bounding sphere, the light as a sphere or as the disk of its area that faces the receiver (Bavoil
-// and Silva 2006): the fraction of the light's cap of directions covered by the sphere's cap. Included after
-// group_kernel.glsl, light_table.glsl; the shader has own.radius, the light's radius, and own.ball, whether the light
-// is a sphere.
+// The patch is replaced by its bounding sphere, the light is a sphere or replaced by the disk of its area that faces
+// the receiver (Bavoil and Silva 2006): computes the fraction of the light's cap of directions covered by the sphere's
+// cap. Included after group_kernel.glsl, light_table.glsl; the shader has own.radius, the light's radius, and own.ball,
+// whether the light is a sphere.
 #include "maps/backprojection/patches/lens.glsl"
 
 const float kHalfDiagonal = 0.70710678118655;
@@ -22,8 +22,8 @@ uint sphere_hides(MapFace face, Tap tap) {
       own.ball != 0 ? sphere_angle(own.radius, distance_to_light) : atan(own.radius, distance_to_light);
   const float between = 2.0 * atan(length(to_light * distance_to_sphere - to_sphere * distance_to_light),
                                    length(to_light * distance_to_sphere + to_sphere * distance_to_light));
-  // Projected stereographically from the point opposite the light's middle, all caps are disks: the covered fraction of
-  // the smaller cap's disk, times the area of this cap.
+  // Projected stereographically from the point opposite the light's middle, all caps are disks. The result is the
+  // covered fraction of the smaller cap's disk, times the area of this cap.
   const float light_radius = tan(0.5 * light_angle);
   const float near_end = tan(0.5 * (between - angle)), far_end = tan(min(0.5 * (between + angle), 1.55));
   const float radius_there = 0.5 * (far_end - near_end), smaller = min(light_radius, radius_there);
@@ -46,11 +46,11 @@ void cone_bounds(out vec2 lower, out vec2 upper) {
   upper = (middle + half_width) / below;
 }
 
-// Returns the texels whose spheres may meet the cone of cone_bounds, no sphere's middle nearer to the light's plane
-// than `near`. A point of a sphere is up to the sphere's radius, half a texel's diagonal, beside its middle and nearer
-// to the light; on the map this is half a diagonal times 1 + the tangent of the texel's direction.
+// Returns the texels whose spheres may meet the cone of cone_bounds, if no sphere's middle is nearer to the light's
+// plane than `near`. A point of a sphere is up to the sphere's radius, half a texel's diagonal, off its middle,
+// sideways and toward the light; on the map this is half a diagonal times 1 + the tangent of the texel's direction.
 Kernel sphere_kernel(MapFace face, uint size, inout float near, bool search) {
-  // Sideways, a texel's lowest row extends down to the light's plane.
+  // On a sideways face, a texel's lowest row extends down to the light's plane.
   if (face.axis != 2) return Kernel(ivec2(0), ivec2(int(size) - 1), true);
   vec2 lower, upper;
   cone_bounds(lower, upper);
@@ -61,8 +61,8 @@ Kernel sphere_kernel(MapFace face, uint size, inout float near, bool search) {
   return kernel_on(face, size, asked.e, lower, upper, max(begins, 0.0) * near, padding);
 }
 
-// Returns the fraction of the light above the receiver's horizon, by area of the disk visible of a sphere: within the
-// circle along which lines from the receiver touch the sphere.
+// Returns the fraction of a spherical light above the receiver's horizon, by area of the visible disk: the disk within
+// the circle along which lines from the receiver touch the sphere.
 float sphere_above_horizon() {
   const float away = length(asked.e);
   if (away <= own.radius) return 0.0;

@@ -47,7 +47,7 @@ void main() {
   uvec2 sum = sums[result];
   float blended = uintBitsToFloat(sum.x);
   uint pairs = 0;
-  // Row by row, in one loop: of two nested loops, Mesa's driver for processors loses iterations (depth_pyramid.glsl).
+  // Row by row, in one loop: Mesa's driver for processors loses iterations of two nested loops (depth_pyramid.glsl).
   const uvec2 extent = uvec2(max(last - first, ivec2(0)));
   for (uint k = 0; k < extent.x * extent.y; ++k) {
     const uvec2 texel = uvec2(first) + uvec2(k % extent.x, k / extent.x);

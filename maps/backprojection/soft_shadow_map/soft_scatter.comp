@@ -34,7 +34,7 @@ void main() {
   first.y = max(first.y, int(push.first_row));
   last.y = min(last.y, int(push.last_row));
   uint pairs = 0;
-  // One loop: of two nested loops, Mesa's driver for processors loses iterations (depth_pyramid.glsl).
+  // One loop: Mesa's driver for processors loses iterations of two nested loops (depth_pyramid.glsl).
   const uvec2 extent = uvec2(max(last - first, ivec2(0)));
   for (uint k = 0; k < extent.x * extent.y; ++k) {
     const uvec2 at = uvec2(first) + uvec2(k % extent.x, k / extent.x);

@@ -69,12 +69,12 @@ Bounds bounds_of(const visibility::SceneFloats& scene, const LightBasis& basis, 
   return bounds;
 }
 
-/// Returns the width of a texel of a map with these bounds and a texel more all around.
+/// Returns the width of a texel of a map with these bounds and a margin of one texel all around.
 glm::dvec2 texel_of(const Bounds& bounds, std::uint32_t size) {
   return glm::max((bounds.upper - bounds.lower) / (size - 2.0), glm::dvec2(kWidestTangent * 0x1p-20));
 }
 
-/// Returns the view whose windows have these bounds and a texel more all around.
+/// Returns the view whose windows have these bounds and a margin of one texel all around.
 gpu::LightView view_of(const visibility::SceneFloats& scene, const LightBasis& basis,
                        const std::array<Bounds, 2>& sides, std::uint32_t size, bool snap) {
   gpu::LightView view{};
@@ -164,8 +164,8 @@ SoftViews fit_to_camera(const visibility::SceneFloats& scene, const LightBasis& 
     occluders.at(s) = bounds_of(scene, basis, parts.occluders, sign);
     Bounds& shading = occluders.at(s);
     if (!shading.any) continue;
-    // An occluder at height z_c shades a receiver at height z up to reach · (1/z_c − 1/z) beside the receiver, and V is
-    // interpolated from texels up to one beside the receiver's.
+    // An occluder at height z_c shades a receiver at height z up to a distance of reach · (1/z_c − 1/z) from the
+    // receiver, and V is interpolated from texels up to one away from the receiver's.
     const glm::dvec2 texel = texel_of(seen, body.receiver_size);
     const double closer = std::max(0.0, 1 / std::max(shading.nearest, 0.0) - 1 / seen.deepest);
     for (int axis = 0; axis < 2; ++axis) {

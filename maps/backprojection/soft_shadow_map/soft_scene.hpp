@@ -29,7 +29,7 @@ SoftScene part_scene(const visibility::SceneFloats& scene, const visibility::Lig
 gpu::LightView fit_window(const visibility::SceneFloats& scene, const LightBasis& basis,
                           std::span<const std::uint8_t> chosen, std::uint32_t size, bool two_sided);
 
-/// Points of receivers (SoftScene) that a camera sees, to which maps are fitted, and what else the fit depends on.
+/// Points of receivers (SoftScene) seen by a camera, to which maps are fitted, and the other inputs of this fit.
 struct SoftBody {
   std::span<const BodyPoint> points;
   glm::dvec2 reach{0};  ///< extent of the light from its centre along u and v
@@ -39,8 +39,8 @@ struct SoftBody {
 struct SoftViews {
   gpu::LightView receivers, occluders;
 };
-/// Returns the same views of the points alone, and of what can shade them: the part of the occluders' window up to
-/// where they hide some of the light from a point. `snap`: texels stay in place while the body changes (snapped()).
+/// Returns such views of the points alone, and of the occluders that can shade them: the part of the occluders' window
+/// that can hide some of the light from a point. `snap`: texels stay in place while the body changes (snapped()).
 SoftViews fit_to_camera(const visibility::SceneFloats& scene, const LightBasis& basis, const SoftScene& parts,
                         const SoftBody& body);
 

@@ -59,12 +59,12 @@ visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, co
                       .bias = {{"bias", "0"}}});
 }
 
-/// Pixels on occluders have no shadows.
+/// Returns a warning if there are pixels on occluders and no other method shades them.
 std::optional<std::string> warning(const visibility::MethodOptions& options,
                                    const std::map<std::string, std::uint64_t>& counters) {
   const auto found = counters.find(kPixelsOnOccluders);
   if (found == counters.end() || found->second == 0) return std::nullopt;
-  // The options include those of the whole family, which this file does not know.
+  // The options include those of the whole family, which are not declared here.
   const auto self = options.find(kSelf.name());
   if (self != options.end() && self->second != kSelf.name_of(SoftSelf::none)) return std::nullopt;
   return "soft-shadow-map has no shadows on what casts shadows: the pixels that show it (counter pixelsOnOccluders) "

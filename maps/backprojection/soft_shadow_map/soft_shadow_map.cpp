@@ -40,13 +40,14 @@
 namespace penumbra::maps {
 namespace {
 
-/// Iterations of one invocation's loop: drivers for processors end all loops of a workgroup after 65,535.
+/// Largest number of iterations of a loop in one pass: drivers for processors end all loops of a workgroup after
+/// 65,535.
 constexpr std::uint32_t kMostTurns = 60000;
 constexpr std::uint32_t kPassesPerSubmission = 96;
 
 class SoftShadowMap final : public visibility::Method, public SeesScene {
  public:
-  /// `self`: the method for V on occluders; null: their horizon.
+  /// `self`: the method for V on occluders; null: V there is the fraction of the light above the horizon.
   SoftShadowMap(const render::Device& device, const MapOptions& map, const SoftSettings& settings,
                 std::unique_ptr<visibility::Method> self);
 
@@ -85,7 +86,8 @@ class SoftShadowMap final : public visibility::Method, public SeesScene {
   };
   /// Surface that a map stores for each texel. The depth of an empty texel is 1; where the farthest is kept, 0.
   enum class Kept : std::uint8_t { nearest, nearest_two, farthest };
-  /// Draws the triangles in a view. Of two layers the second is behind the first in the buffer, and is not read back.
+  /// Draws the triangles in a view. If two layers are kept, the second follows the first in the buffer, and is not read
+  /// back.
   Map draw(CasterMaps& casters, const gpu::LightView& view, std::uint32_t size, Kept kept,
            std::unique_ptr<render::Buffer>& buffer);
   [[nodiscard]] SoftViews views() const;
@@ -102,16 +104,16 @@ class SoftShadowMap final : public visibility::Method, public SeesScene {
   MapOptions map_;
   SoftSettings settings_;
   std::unique_ptr<visibility::Method> self_;
-  std::vector<std::uint32_t> on_occluder_;  ///< of the last evaluated tile, 1 for a pixel on an occluder
+  std::vector<std::uint32_t> on_occluder_;  ///< for each pixel of the last evaluated tile: 1 if it shows an occluder
   CasterMaps occluder_maps_, receiver_maps_;
   render::ComputePass gather_, scatter_, resolve_, look_up_;
   Receivers receivers_;
   visibility::PassTimes times_;
   std::map<std::string, std::uint64_t> counters_;
   const visibility::SceneFloats* scene_ = nullptr;
-  SceneSpace space_;  ///< of the camera
+  SceneSpace space_;  ///< space of the camera
   const visibility::ViewSamples* samples_ = nullptr;
-  bool maps_are_old_ = false;  ///< made for another view
+  bool maps_are_old_ = false;  ///< the maps were made for another view
   const visibility::Light* light_ = nullptr;
   LightBasis basis_;
   LightTable light_table_;

@@ -21,7 +21,7 @@ struct SoftMapPush {
   uint occluder_first, receiver_first;  // first float in their buffers
   uint second_first;                    // first float of the surfaces behind the occluders, if depth_use needs them
   uint upright;                         // 1: the light is a rectangle along its basis, without texture
-  uint half_floats;                     // 1: adds in 16-bit floats, as blending did
+  uint half_floats;                     // 1: adds in 16-bit floats, as published
   uint first_row, last_row;             // of the map in the loop: some drivers end loops after 65,535 iterations
   uint later;                           // 1: keeps the smaller V of this pass and the previous ones
 };

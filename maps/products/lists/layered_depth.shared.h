@@ -10,7 +10,7 @@ namespace penumbra::maps::gpu {
 struct LayerEntry {
   float t;      // depth along the face's axis, at the texel's own centre
   float reach;  // change of the surface's depth within the texel: a depth this far off is still this surface
-  uint weight;  // of the light samples that see the surface
+  uint weight;  // total weight of the light samples that see the surface
   uint last;    // index of the last of these samples, counted from 1
 };
 

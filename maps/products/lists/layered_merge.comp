@@ -24,7 +24,7 @@ void main() {
   const uint first = texel * push.layers;
   uint count = counts[texel], done = 0;  // bits of the most recently merged depth; depths are positive
   for (;;) {
-    uint next = 0xffffffffu;  // the smallest depth beyond
+    uint next = 0xffffffffu;  // the smallest depth beyond `done`
     float reach = 0.0;
     for (uint node = heads[texel]; node != 0; node = nodes[node - 1].before) {
       const LayerNode found = nodes[node - 1];

@@ -7,10 +7,10 @@
 // Warps every texel of one light sample's maps into the maps of the light's centre (Agrawala et al. 2000). A texel
 // covers the centre's texels whose centres lie in its image; neighbours on one surface (depths within epsilon plus the
 // change expected from the slope on the other side) share the image of their border, so that a surface is covered
-// without gaps. The depth is that of the plane through the borders' middles at the centre's texel, not that of the
-// sample's own centre: otherwise different samples' views of one steep surface would be as many surfaces. Contributions
-// to a texel form a list; layered_merge.comp reads the list in the order of depth, so the order of writing does not
-// matter.
+// without gaps. The stored depth is that of the plane through the middles of the texel's borders, taken at the centre's
+// texel, not at the sample's own texel: otherwise different samples' views of one steep surface would be separate
+// surfaces. Contributions to a texel form a list; layered_merge.comp reads the list in the order of depth, so the order
+// of writing does not matter.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Centre { LightView centre; };
@@ -130,7 +130,7 @@ void main() {
         const uint node = atomicAdd(node_count, 1);
         if (node >= push.node_capacity) continue;
         const uint place = ((to.first_face + k) * push.size + uint(y)) * push.size + uint(x);
-        // Clamped to the depths of the texel: surfaces beside the texel are not included.
+        // Clamped to the depths of the texel: surfaces next to the texel are not included.
         const float inverse = sheet.at + dot(sheet.change, vec2(x, y) + 0.5 - sheet.middle);
         const float t = clamp(1.0 / max(inverse, 1.0 / deepest), nearest, deepest);
         // Half a texel across and up is the largest distance of a represented point from the texel's centre.

@@ -9,7 +9,8 @@
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Maps { float maps[]; };
-layout(scalar, binding = 1) buffer Nearest { uint nearest[]; };  // of each sample: the bits of a depth, all ones before
+layout(scalar, binding = 1) buffer Nearest { uint nearest[]; };  // for each sample: the bits of a depth, at first all
+                                                                 // ones
 layout(scalar, push_constant) uniform Push { NearestDepthsPush push; };
 
 void main() {

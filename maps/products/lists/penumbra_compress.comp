@@ -7,7 +7,8 @@
 // Sorts the events of each texel, sums them to V as a function of depth, and reduces V to as few steps as the bound
 // allows (Lokovic and Veach 2000 with constant pieces in place of lines: V jumps at every event, and a line would not
 // stay within the bound). A piece continues while one value is within the bound of everything in the piece. V = 1 and V
-// = 0 are kept exactly. In place: steps (bits of t at their begin, bits of V from there) overwrite events already read.
+// = 0 are kept exactly. In place: steps (bits of the t at which they begin, bits of V from there) overwrite events
+// already read.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) buffer Events { uvec2 events[]; };

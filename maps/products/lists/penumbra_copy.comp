@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/products/lists/penumbra_events.shared.h"
 
-// Copies the steps of each texel to the begin of its list.
+// Copies the steps of each texel to the beginning of its list.
 
 layout(local_size_x = kLookupGroup) in;
 layout(scalar, binding = 0) readonly buffer Steps { uvec2 steps[]; };

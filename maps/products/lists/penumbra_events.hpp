@@ -10,8 +10,8 @@ namespace penumbra::maps {
 /// V as a function of depth for each texel of the light's centre's maps (St-Amour, Paquette and Poulin 2005): lists of
 /// steps. The ray through a texel's centre is at t · direction, with `direction` of length one along the face's axis.
 ///
-/// The buffer holds T + 1 words, the begin of the list of each of the T texels, and then the steps: the bits of t, and
-/// the bits of V from there to the next step. Before the first step V is 1.
+/// The buffer holds T + 1 words, the beginning of the list of each of the T texels and the end of the last one, and
+/// then the steps: the bits of t, and the bits of V from there to the next step. Before the first step V is 1.
 class PenumbraEvents final : public MapProduct {
  public:
   /// `bound`: largest permitted error of V, 0 … 0.5.

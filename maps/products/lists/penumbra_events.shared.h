@@ -31,7 +31,7 @@ struct NearestDepthsPush {
 struct CompressPush {
   uint texel_count;
   uint capacity;
-  uint total;      // of all weights
+  uint total;      // sum of all weights
   uint tolerance;  // twice the bound, in weights
 };
 

@@ -52,7 +52,8 @@ void clip(float x0, float x1, inout float first, inout float last) {
 
 // Returns the t at which the ray leaves the column (or row) of texels at its border c, from `from` on; `last`, the end
 // of the face, if the ray is still on this side of the border there. The sign at the end decides, because t itself is
-// ambiguous: on a sideways face the ray may come from behind the sample, and borders never reached lie at any t before.
+// ambiguous: on a sideways face the ray may come from behind the sample, and borders that it never reaches then have an
+// earlier t.
 float crossing(float o, float d, float ow, float dw, float c, float from, float last, bool grows) {
   const float here = o - c * ow, slope = d - c * dw, end = here + last * slope;
   if (grows ? !(end > 0.0) : !(end < 0.0)) return last;
@@ -122,7 +123,7 @@ void main() {
     const vec3 offset = centre.point - view.point;
     const vec3 o = vec3(dot(push.basis.u, offset), dot(push.basis.v, offset), mirrored * dot(push.basis.n, offset));
     const SideView own = view.side[s];
-    // The margin exceeds the rounding of where the ray is at this depth, however near the surface is to the light.
+    // The margin exceeds the rounding of the ray's position at this depth, however near the surface is to the light.
     const float least = 0.999 * view.far * nearest_of[push.first_point + j] - 1e-5 * (abs(o.x) + abs(o.y) + abs(o.z));
     for (uint f = 0; f < own.face_count; ++f) {
       const bool own_window = own.face_count == 1;

@@ -11,7 +11,7 @@ namespace penumbra::maps {
 
 std::vector<std::uint32_t> integer_weights(const visibility::Light& light) {
   std::vector<std::uint32_t> weights(light.sample_count(), 1);
-  // Sum 2^24: each is off by at most 2^-25 of the light, in total 0.00012 for 4096 samples.
+  // The weights add up to 2^24: each is off by at most 2^-25 of the light, in total 0.00012 for 4096 samples.
   std::ranges::transform(light.weights, weights.begin(),
                          [](double weight) { return static_cast<std::uint32_t>(std::lround(std::ldexp(weight, 24))); });
   return weights;
