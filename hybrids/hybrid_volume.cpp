@@ -30,7 +30,7 @@ visibility::MeshVerdict hybrid_volume_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
               "a hard shadow from the light's centre, exact where the map's texels resolve its outlines", mesh,
-              {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 visibility::ErrorRepairs hybrid_volume_repairs(const visibility::MethodDescription& method,
@@ -146,7 +146,8 @@ visibility::MethodDescription hybrid_volume_description() {
           .family = visibility::Family::geometry,
           .paper = "Chan and Durand 2004; McCool 2000",
           .output = visibility::Output::scalar,
-          .exact_for = "nothing; the hard shadow from the light's centre is exact where the map's texels resolve its outlines",
+          .exact_for =
+              "nothing; the hard shadow from the light's centre is exact where the map's texels resolve its outlines",
           .lights = visibility::kPlanarLights,
           .textures = false,
           .on_request = true,

@@ -76,8 +76,8 @@ class Exact final : public visibility::Method {
 visibility::MeshVerdict exact_method_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::exact,
-      visibility::reason_with("the area of the light that no triangle hides, whatever the defects of the mesh",
-                              mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+      visibility::reason_with("the area of the light that no triangle hides, whatever the defects of the mesh", mesh,
+                              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 Exact::Exact(const visibility::MethodOptions& options) {

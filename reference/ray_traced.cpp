@@ -39,10 +39,11 @@ using visibility::Tile;
 constexpr std::uint64_t kMaxMaskBytes = std::uint64_t{64} << 20;  // of one tile: an interrupt waits for the tile's end
 constexpr std::uint32_t kNeverMet = SceneFloats::kNoPlane;        // plane index of the light's own body
 
-constexpr visibility::ChoiceOption kPacket{"packet",
-                                           {{"auto", 0}, {"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
-                                           0,
-                                           "shadow rays traced together; auto: as many as the processor's vectors hold"};
+constexpr visibility::ChoiceOption kPacket{
+    "packet",
+    {{"auto", 0}, {"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}},
+    0,
+    "shadow rays traced together; auto: as many as the processor's vectors hold"};
 
 visibility::MeshVerdict ray_traced_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
@@ -51,7 +52,7 @@ visibility::MeshVerdict ray_traced_verdict(const mesh::Diagnosis& mesh) {
                                   mesh,
                                   {{mesh.needles.count, "needles, which make more such pairs"},
                                    {mesh.t_junctions.count, "T-junctions, which make more such pairs"},
-                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 }  // namespace

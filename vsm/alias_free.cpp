@@ -33,10 +33,10 @@ namespace {
 using pairs::Footprint, pairs::LightPixels;
 
 visibility::MeshVerdict alias_free_verdict(const mesh::Diagnosis& mesh) {
-  return {
-      visibility::Verdict::approximate,
-      visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
-                              mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+  return {visibility::Verdict::approximate,
+          visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
+                                  mesh,
+                                  {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 constexpr visibility::RealOption kPerPixel{"perPixel", 0.125, 64, 1,

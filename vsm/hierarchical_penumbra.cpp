@@ -35,7 +35,7 @@ visibility::MeshVerdict hierarchical_penumbra_verdict(const mesh::Diagnosis& mes
   return {visibility::Verdict::exact,
           visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
-                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 visibility::MethodDescription describe_hierarchical_penumbra() {

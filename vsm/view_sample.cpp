@@ -22,7 +22,7 @@ visibility::MeshVerdict view_sample_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
           visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
-                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 enum class Variant : std::uint8_t { tree, sintorn };

@@ -50,12 +50,12 @@ visibility::MeshVerdict exact_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
           visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
-                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 visibility::MeshVerdict approximate_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with("light samples near a triangle's outline are as the left-sample map has them", mesh,
-                                  {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                                  {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 visibility::ErrorRepairs view_sample_planar_repairs(const visibility::MethodDescription& method,

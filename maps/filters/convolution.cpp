@@ -14,7 +14,7 @@ namespace penumbra::maps {
 namespace {
 
 visibility::MeshVerdict convolution_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("all blockers in one plane at their mean height, whatever their own", mesh);
+  return judge_for_maps("all blockers moved to one plane at their mean height, whatever their own heights", mesh);
 }
 
 }  // namespace

@@ -164,7 +164,7 @@ void History::keep(const visibility::Tile& tile) {
   if (memory_ == nullptr) return;
   visibility::KeptPicture& picture = memory_->now[key()];
   if (picture.visibility.size() != samples_->size())
-    require_memory(samples_->size() * kBytesKept, "V of the frame before, of one more light",
+    require_memory(samples_->size() * kBytesKept, "V of the previous frame, for one more light",
                    "choose a smaller --size, or leave out reproject=on");
   if (tile.first_row == 0 || picture.visibility.size() != samples_->size()) {
     picture = {*samples_, std::vector<float>(samples_->size(), std::numeric_limits<float>::quiet_NaN())};

@@ -16,7 +16,8 @@ namespace {
 constexpr visibility::IntegerOption kSlices{"slices", 1, gpu::kMostSlices, 8, "slices parallel to the light"};
 
 visibility::MeshVerdict occlusion_textures_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("slices, each taken to be flat, and a product in place of their union", mesh);
+  return judge_for_maps("slices, each assumed to be flat, whose visible fractions are multiplied in place of a union",
+                        mesh);
 }
 
 }  // namespace

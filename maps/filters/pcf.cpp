@@ -47,27 +47,28 @@ constexpr visibility::ChoiceOption kKeep{
     "the middle between these; 0: compare all texels"};
 constexpr visibility::RealOption kSoftness{
     "softness", 0.0001, 4, 0.1,
-    "test=mean: distance behind the mean depth at which the receiver is dark, over the receiver's depth"};
+    "test=mean: distance behind the mean depth at which the receiver is dark, as a fraction of the receiver's depth"};
 constexpr visibility::IntegerOption kTaps{
     "taps", 0, 256, 0,
     "number of texels of the window that are compared, in a pattern that is rotated at every receiver; 0: all of them"};
 constexpr visibility::IntegerOption kStages{"stages", 1, 2, 1,
-                                            "2: the outermost quarter of the taps decide where they agree"};
+                                            "2: the outermost quarter of the taps decides alone if these taps agree"};
 
 visibility::MeshVerdict pcf_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("a hard shadow of the light's centre, blurred by a window that knows no light", mesh);
+  return judge_for_maps("a hard shadow of the light's centre, blurred by a window of the same size for any light",
+                        mesh);
 }
 
 /// Throws UsageError for options that exclude one another.
 void refuse_together(const visibility::MethodDescription& method, const visibility::ParsedOptions& options,
                      const gpu::PcfPush& push) {
   if (push.weights == gpu::kBilinear && push.taps != 0) {
-    throw UsageError("method pcf: weights=bilinear counts parts of texels, and taps={} takes whole ones; take taps=0",
-                     push.taps);
+    throw UsageError(
+        "method pcf: weights=bilinear weights parts of texels, but taps={} reads whole texels; take taps=0", push.taps);
   }
   if (push.keep != 0 && (push.taps != 0 || push.weights != gpu::kEqual || push.test == gpu::kByMeanDepth)) {
     throw UsageError(
-        "method pcf: keep={} chooses among all texels of a window, which count alike; take taps=0, weights=equal and "
+        "method pcf: keep={} chooses among all texels of a window, with equal weights; take taps=0, weights=equal and "
         "test=depth or object",
         push.keep);
   }
@@ -78,8 +79,8 @@ void refuse_together(const visibility::MethodDescription& method, const visibili
   }
   if (push.test == gpu::kByObject && view_fit(method.options, options).has_faces()) {
     throw UsageError(
-        "method pcf: test=object knows windows and cubes alone; take projection=window or cube with fit=receivers, or "
-        "fit=view");
+        "method pcf: test=object supports only windows and cubes; take projection=window or cube with fit=receivers, "
+        "or fit=view");
   }
 }
 

@@ -73,7 +73,7 @@ class PcssTaps final : public MapProduct {
 };
 
 visibility::MeshVerdict pcss_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("one map, and one mean height for all that shades a pixel", mesh);
+  return judge_for_maps("one map, and one mean height for all casters that shade a pixel", mesh);
 }
 
 }  // namespace
@@ -85,8 +85,8 @@ visibility::MethodDescription pcss_description() {
       .paper = "Fernando 2005",
       .output = visibility::Output::scalar,
       .exact_for =
-          "nothing; in the limit of large maps and many samples, where all blockers lie in one plane parallel to "
-          "the light and cover the search window or none of it",
+          "nothing; in the limit of large maps and many samples, scenes in which all blockers lie in one plane "
+          "parallel to the light and cover all or none of the search window",
       .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = pcss_verdict,

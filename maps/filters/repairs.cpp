@@ -13,9 +13,9 @@ using visibility::MethodDescription;
 using visibility::MethodOptions;
 
 MapRepairs one_surface() {
-  return {.layers = "it asks the nearest surfaces; no form of the method asks more",
-          .fusion = "it takes means of what texels say: nothing is added or joined",
-          .gaps = "texels are averaged, not projected: there is nothing between them"};
+  return {.layers = "it reads only the nearest surfaces; no form of the method reads more",
+          .fusion = "it averages the results of texels: nothing is added or joined",
+          .gaps = "texels are averaged, not projected: there are no gaps between them"};
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ ErrorRepairs pcf_repairs(const MethodDescription& method, const MethodOptions& g
 ErrorRepairs slice_repairs(const MethodDescription& method, const MethodOptions& given) {
   MapRepairs repairs = one_surface();
   repairs.layers = "its slices hold all surfaces";
-  repairs.fusion = "slices are taken to be independent; no form of the method joins them";
+  repairs.fusion = "slices are assumed to be independent; no form of the method joins them";
   return map_repairs(method, given, repairs);
 }
 

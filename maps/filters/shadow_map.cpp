@@ -29,17 +29,17 @@ constexpr visibility::ChoiceOption kHardTest{
     "test",
     {{"depth", HardTest::depth}, {"id", HardTest::plane}, {"object", HardTest::object}},
     HardTest::depth,
-    "test of visibility: by a texel's depth, or by its plane or object, which must be the receiver's and needs no "
-    "bias"};
+    "test of visibility: by the depth of a texel's surface, or by the plane or object of this surface, which must be "
+    "the receiver's own (then no bias is needed)"};
 
 constexpr visibility::IntegerOption kHistory{
     "history", 1, 1024, 1,
-    "frames of a still camera, each with a map whose texels lie elsewhere, mixed by confidence; 1: one map"};
+    "number of frames of a still camera, each with a map whose texels are displaced, mixed by confidence; 1: one map"};
 
-constexpr auto kReproject = visibility::flag_option(
-    "reproject", false,
-    "of a sequence: mix V with that of the frame before, where it shows the same surface; the first frame of a run has "
-    "none before");
+constexpr auto kReproject =
+    visibility::flag_option("reproject", false,
+                            "in a sequence: mixes V with V of the previous frame where that frame shows the same "
+                            "surface; the first frame of a run has no previous frame");
 
 visibility::MeshVerdict shadow_map_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps("a hard shadow of the light's centre, its edges off by up to half a texel", mesh);
@@ -79,9 +79,8 @@ std::unique_ptr<visibility::Method> make_shadow_map(const render::Device& device
   if (const HardTest test = parsed[kHardTest]; test != HardTest::depth) {
     if (view_fit(recipe.description.options, parsed).has_faces()) {
       throw UsageError(
-          "method shadow-map: test={} knows windows and cubes alone; take projection=window or cube with "
-          "fit=receivers, or "
-          "fit=view",
+          "method shadow-map: test={} supports only windows and cubes; take projection=window or cube with "
+          "fit=receivers, or fit=view",
           kHardTest.name_of(test));
     }
     recipe.look_up = shaders::kShadowMapIdsComp;

@@ -18,7 +18,8 @@ namespace penumbra::maps {
 namespace {
 
 visibility::MeshVerdict silhouette_map_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("a hard shadow of the light's centre with straight edges, where no two pass one texel", mesh);
+  return judge_for_maps(
+      "a hard shadow of the light's centre with straight edges, wherever no two edges pass through one texel", mesh);
 }
 
 }  // namespace
@@ -28,7 +29,8 @@ visibility::MethodDescription silhouette_map_description() {
           .family = visibility::Family::image,
           .paper = "Sen, Cammarano and Hanrahan 2003",
           .output = visibility::Output::scalar,
-          .exact_for = "nothing; the hard shadow of the light's centre where one straight edge passes a texel",
+          .exact_for =
+              "nothing; the hard shadow of the light's centre wherever a single straight edge passes through a texel",
           .lights = visibility::kPlanarLights,
           .textures = false,
           .on_request = true,

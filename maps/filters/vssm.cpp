@@ -45,8 +45,8 @@ constexpr visibility::ChoiceOption kMoments{"moments",
                                              {"csm", Moments::csm},
                                              {"esm", Moments::esm}},
                                             Moments::vsm,
-                                            "representation of a window's depths: mean and variance, these in layers "
-                                            "or of exponentials, a Fourier series, one exponential"};
+                                            "representation of a window's depths: mean and variance; the same in "
+                                            "layers, or of exponentials; a Fourier series; or one exponential"};
 constexpr visibility::ChoiceOption kFilter{
     "filter",
     {{"sat", PrefilterKind::table}, {"mip", PrefilterKind::pyramid}, {"n-buffer", PrefilterKind::windows}},
@@ -55,8 +55,8 @@ constexpr visibility::ChoiceOption kFilter{
 constexpr visibility::IntegerOption kLayers{"layers", 1, 16, 4, "lvsm: layers of equal height"};
 constexpr visibility::IntegerOption kTerms{"terms", 1, 16, 16, "csm: terms of the series"};
 constexpr visibility::RealOption kOffset{"offset", 0, 8, 1,
-                                         "csm: lobes by which the step is shifted, so that what is level with a "
-                                         "receiver is lit; 1: to the series' first maximum"};
+                                         "csm: number of lobes by which the step is shifted, so that points level with "
+                                         "a receiver are lit; 1: shifted to the series' first maximum"};
 constexpr visibility::RealOption kDamping{"damping", 0, 16, 1,
                                           "csm: coefficient k of n is multiplied by exp(-damping (k/n)^2)"};
 constexpr visibility::RealOption kScale{
@@ -88,8 +88,8 @@ constexpr visibility::ChoiceOption kSubdivision{
      {"adaptive", Subdivision::adaptive},
      {"none", Subdivision::none}},
     Subdivision::automatic,
-    "vsm, lvsm, evsm: windows are cut in the smallest parts, or only where their mean is behind the receiver, or not; "
-    "auto: of vsm and lvsm uniform, of evsm and with window none"};
+    "vsm, lvsm, evsm: windows are cut into the smallest parts, only where their mean is behind the receiver, or never; "
+    "auto: uniform for vsm and lvsm, none for evsm and with the option window"};
 constexpr visibility::IntegerOption kCuts{"cuts", 1, 4, 3, "largest number of times that a window is cut in four"};
 constexpr visibility::IntegerOption kFixedWindow{
     "window", 0, 64, 0,
@@ -103,8 +103,8 @@ std::optional<std::string> vssm_warning(const visibility::MethodOptions& options
                                         const std::map<std::string, std::uint64_t>& counters) {
   if (!counters.contains(kReducedMaps)) return std::nullopt;
   return fmt::format(
-      "vssm: maps have {0} texels a side in place of the default of {1}, whose means the device's buffers do not hold; "
-      "take filter=sat or fewer terms for {1}, or size={0}",
+      "vssm: maps have {0} texels a side in place of the default of {1}, because the device's buffers cannot hold the "
+      "means of larger maps; take filter=sat or fewer terms for {1}, or size={0}",
       options.at(kMapSize.name()), kMapSize.otherwise);
 }
 
@@ -118,26 +118,27 @@ std::uint32_t most_faces(const ViewFit& fit) {
 }
 
 visibility::MeshVerdict vssm_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("one map, one mean height for all that shades a pixel, and a bound in place of a count", mesh);
+  return judge_for_maps("one map, one mean height for all casters that shade a pixel, and a bound in place of a count",
+                        mesh);
 }
 
 }  // namespace
 
 visibility::MethodDescription vssm_description() {
-  visibility::MethodDescription description{.name = "vssm",
-                                            .family = visibility::Family::image,
-                                            .paper = "Yang et al. 2010; Annen et al. 2008",
-                                            .output = visibility::Output::scalar,
-                                            .exact_for =
-                                                "nothing; in the limit of large maps, where all blockers lie in one "
-                                                "plane and what they shade in another, both "
-                                                "parallel to a rectangle light",
-                                            .lights = visibility::kPlanarLights,
-                                            .textures = false,
-                                            .options = compared_map_option_descriptions(),
-                                            .verdict_on = vssm_verdict,
-                                            .repairs = vssm_repairs,
-                                            .warning = vssm_warning};
+  visibility::MethodDescription description{
+      .name = "vssm",
+      .family = visibility::Family::image,
+      .paper = "Yang et al. 2010; Annen et al. 2008",
+      .output = visibility::Output::scalar,
+      .exact_for =
+          "nothing; in the limit of large maps, scenes in which all blockers lie in one plane and all receivers in "
+          "another, both parallel to a rectangle light",
+      .lights = visibility::kPlanarLights,
+      .textures = false,
+      .options = compared_map_option_descriptions(),
+      .verdict_on = vssm_verdict,
+      .repairs = vssm_repairs,
+      .warning = vssm_warning};
   for (const auto& option :
        {kMoments.description(), kFilter.description(), kSubdivision.description(), kCuts.description(),
         kFixedWindow.description(), kLayers.description(), kTerms.description(), kOffset.description(),

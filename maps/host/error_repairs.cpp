@@ -43,7 +43,7 @@ ErrorRepair finer_maps(const MethodDescription& method, const MethodOptions& giv
   const MethodOptions options = visibility::complete_options(method, given);
   ErrorRepair repair{.cause = ErrorCause::resolution,
                      .end = RepairEnd::limit,
-                     .words = "texels half and a quarter as wide, and the limit of that"};
+                     .words = "texels half and a quarter as wide, and the limit of these runs"};
   for (const std::uint32_t factor : {2U, 4U}) {
     if (auto finer = multiplied(method, options, doubled, factor)) repair.runs.push_back({method.name, *finer});
   }
@@ -54,10 +54,10 @@ ErrorRepair finer_maps(const MethodDescription& method, const MethodOptions& giv
 ErrorRepair points_of_light(const MethodOptions& options) {
   MethodOptions alike;
   for (const char* key : {"size", "bias", "rasteriser"}) alike[key] = options.at(key);
-  return {
-      .cause = ErrorCause::view,
-      .runs = {{"accumulate", alike, 1, kRepairSamples}},
-      .words = fmt::format("sub-lights without end: hard shadows of {} light samples (accumulate)", kRepairSamples)};
+  return {.cause = ErrorCause::view,
+          .runs = {{"accumulate", alike, 1, kRepairSamples}},
+          .words =
+              fmt::format("infinitely many sub-lights: hard shadows of {} light samples (accumulate)", kRepairSamples)};
 }
 
 ErrorRepair more_layers(const MethodDescription& method, const MethodOptions& given) {
@@ -65,7 +65,7 @@ ErrorRepair more_layers(const MethodDescription& method, const MethodOptions& gi
   const std::string layers[] = {"layers"};
   ErrorRepair repair{.cause = ErrorCause::layers,
                      .end = RepairEnd::settled,
-                     .words = "more layers of surfaces behind one another, until another one changes nothing"};
+                     .words = "more layers of surfaces behind one another, until another layer changes nothing"};
   while (auto more = multiplied(method, options, layers, 2)) {
     options = *more;
     repair.runs.push_back({method.name, std::move(*more)});
@@ -117,7 +117,7 @@ ErrorRepairs map_repairs(const MethodDescription& method, const MethodOptions& g
                inseparable(ErrorCause::gaps, repairs.gaps),
                {.cause = ErrorCause::bias,
                 .runs = {best},
-                .words = fmt::format("a bias of {} texels, which is what rounding needs{}", exact.at("bias"),
+                .words = fmt::format("a bias of {} texels, just enough for rounding{}", exact.at("bias"),
                                      has_depth ? ", behind the nearest surface" : "")},
                method.counts_light_samples() ? visibility::more_light_samples(method, given)
                                              : inseparable(ErrorCause::samples, "it has no light samples"),

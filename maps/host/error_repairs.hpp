@@ -37,7 +37,8 @@ struct MapRepairs {
   bool ends_at_points = false;                      ///< points_of_light, not parted_light
   std::string many_views = {};                      ///< reason why `view` cannot be separated; empty: separable
   std::string layers = {}, fusion = {}, gaps = {};  ///< reasons why these causes cannot be separated
-  std::string falloff = "V follows from what its texels hold, by no formula of a distance that has another form";
+  std::string falloff =
+      "V follows from the contents of texels, not from a formula of a distance that has alternative forms";
   /// Options that distinguish a caster from the receiver's own surface with no tolerance beyond rounding.
   visibility::MethodOptions bias = {{"bias", "0.015625"}};
 };

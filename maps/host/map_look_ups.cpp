@@ -131,7 +131,7 @@ void MapMethod::ask_all(const visibility::Tile& tile) {
     results_->read(std::span(&cut.any, 1), end * sizeof(std::uint32_t));
     if (cut.any == 0) return;
     if (rows == 1) {
-      throw ResourceError("method {}: {} ends the loop over one row of a map before its end; take a smaller size",
+      throw ResourceError("method {}: {} ends a loop before it has processed one row of a map; take a smaller size",
                           recipe_.description.name, device_->info().name);
     }
     const std::uint32_t other = cut.asked != 0 ? cut.asked : cut.to_ask + tile_pixels_;

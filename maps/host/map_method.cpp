@@ -64,7 +64,7 @@ void MapMethod::prepare_light(const visibility::Light& light) {
   visibility::check_light(recipe_.description, light);
   PENUMBRA_ASSERT(scene_ != nullptr, "{}: prepare_light before prepare_mesh", recipe_.description.name);
   if (options_.fit.asks_triangles() && casters_.have_holes())
-    throw InputError("method {}: {} draws no surfaces with holes (alphaMode MASK); take another",
+    throw InputError("method {}: {} cannot draw surfaces with holes (alphaMode MASK); take another one",
                      recipe_.description.name, words_of(options_.fit));
   light_ = &light;
   basis_ = light_basis(light, *scene_);

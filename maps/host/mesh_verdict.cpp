@@ -7,13 +7,14 @@
 namespace penumbra::maps {
 
 visibility::MeshVerdict judge_for_maps(std::string_view sentence, const mesh::Diagnosis& mesh) {
-  return {visibility::Verdict::approximate,
-          visibility::reason_with(
-              sentence, mesh,
-              {{mesh.needles.count, "needles, which are hit or missed where thinner than a texel"},
-               {mesh.boundary_loops, "open boundaries, whose holes close or widen where narrower than a texel"},
-               {mesh.t_junctions.count, "T-junctions, whose hairline cracks single texels may show"},
-               {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+  return {
+      visibility::Verdict::approximate,
+      visibility::reason_with(
+          sentence, mesh,
+          {{mesh.needles.count, "needles, which are hit or missed where they are thinner than a texel"},
+           {mesh.boundary_loops, "open boundaries, whose holes close or widen where they are narrower than a texel"},
+           {mesh.t_junctions.count, "T-junctions, whose hairline cracks may show as single texels"},
+           {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 }  // namespace penumbra::maps

@@ -38,15 +38,15 @@ MapOptions map_options(const render::Device& device, const visibility::MethodDes
     chosen.offset_factor = static_cast<float>(options[kOffsetFactor]);
     chosen.offset_units = static_cast<float>(options[kOffsetUnits]) * 0x1p-24F;
     if ((chosen.offset_factor != 0 || chosen.offset_units != 0) && chosen.depth != DepthUse::first) {
-      throw UsageError("method {}: a polygon offset moves the first surface alone; take {}=first", method.name,
+      throw UsageError("method {}: a polygon offset moves only the first surface; take {}=first", method.name,
                        kDepth.name());
     }
   }
   chosen.fit = view_fit(method.options, options);
   const ViewFit& fit = chosen.fit;
   if (fit.fit != Fit::receivers && fit.projection != Projection::window) {
-    throw UsageError("method {}: option projection={} is of all receivers; take fit=receivers, not fit={}", method.name,
-                     kProjection.name_of(fit.projection), kFit.name_of(fit.fit));
+    throw UsageError("method {}: option projection={} applies to maps of all receivers; take fit=receivers, not fit={}",
+                     method.name, kProjection.name_of(fit.projection), kFit.name_of(fit.fit));
   }
   if (fit.has_faces() && chosen.rasteriser == Rasteriser::opengl) {
     throw UsageError(
@@ -54,7 +54,9 @@ MapOptions map_options(const render::Device& device, const visibility::MethodDes
         method.name, words_of(fit));
   }
   if (fit.asks_triangles() && (chosen.offset_factor != 0 || chosen.offset_units != 0)) {
-    throw UsageError("method {}: {} draws rays, not polygons: it has no polygon offset", method.name, words_of(fit));
+    throw UsageError(
+        "method {}: {} intersects rays with triangles in place of drawing polygons, so it has no polygon offset",
+        method.name, words_of(fit));
   }
   if (chosen.size > device.limits().max_image_size) {
     throw UsageError("method {}: option {} is {}; this device draws images of up to {} texels a side", method.name,

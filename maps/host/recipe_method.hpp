@@ -45,7 +45,7 @@ class MapMethod final : public visibility::Method,
                     recipe_.description.name);
     if (const std::uint32_t least = 2 * recipe_.beside_texels + 4; options_.fit.has_faces() && options_.size < least) {
       throw UsageError(
-          "method {}: size={} leaves no room between what is tapped beside a map's ends; take size={} or more",
+          "method {}: size={} leaves no room for the taps outside of a map's borders; take size={} or more",
           recipe_.description.name, options_.size, least);
     }
     casters_.set_offset(options_.offset_factor, options_.offset_units);

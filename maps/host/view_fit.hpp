@@ -55,16 +55,17 @@ inline constexpr visibility::ChoiceOption kWindowFit{
     "fit",
     {{"receivers", Fit::receivers}, {"view", Fit::view}},
     Fit::receivers,
-    "region over which texels are spread: all receivers, or what the camera sees of them; with all that can shade it"};
+    "region over which texels are spread: all receivers, or the part of them that the camera sees; with all casters "
+    "that can shade it"};
 inline constexpr visibility::ChoiceOption kViewBody{
     "body",
     {{"visible", ViewBody::visible}, {"frustum", ViewBody::frustum}},
     ViewBody::visible,
     "region that a map covers: the visible points, or the receivers in the camera's frustum"};
 inline constexpr auto kSnap = visibility::flag_option(
-    "snap", false, "fit=view: texels stay where they are while the camera moves, at up to 1.2 of their width");
+    "snap", false, "fit=view: texels keep their positions while the camera moves, and are up to 1.2 times as wide");
 inline constexpr visibility::IntegerOption kCascades{
-    "cascades", 0, 8, 0, "slices of depth, each with a map; 0: 4 of fit=cascades, 1 of the warps"};
+    "cascades", 0, 8, 0, "number of slices of depth, each with a map; 0: 4 for fit=cascades, 1 for the warps"};
 inline constexpr visibility::ChoiceOption kSplit{"split",
                                                  {{"logarithmic", Split::logarithmic},
                                                   {"practical", Split::practical},

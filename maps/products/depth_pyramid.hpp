@@ -45,8 +45,8 @@ constexpr visibility::ChoiceOption<Search, 4> search_option(Search otherwise) {
   return {"search",
           {{"none", Search::none}, {"hsm", Search::hsm}, {"mssm", Search::mssm}, {"ysm", Search::ysm}},
           otherwise,
-          "depths that bound a view sample's search: the map's nearest alone, or those in its own kernel, from a "
-          "min-max pyramid (hsm), a multi-scale one (mssm), or both (ysm)"};
+          "depths that bound a view sample's search: only the nearest depth of the map, or the depths in the sample's "
+          "kernel, from a min-max pyramid (hsm), a multi-scale one (mssm), or both (ysm)"};
 }
 
 /// Returns the kind of `search`, which must not be none.

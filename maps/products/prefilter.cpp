@@ -102,8 +102,7 @@ void Prefilter::record(render::Commands& commands, const MapSet& maps) {
     std::uint32_t size = maps.size;
     while (size > 1 && !prefilter_layout(options_, size, faces, buffer_bytes())) --size;
     throw ResourceError(
-        "method option size={}: what this method makes of {} maps is more than {} buffers of {} can hold; take "
-        "size={} or less",
+        "method option size={}: the prefiltered data of {} maps do not fit into {} buffers of {}; take size={} or less",
         maps.size, faces, gpu::kPrefilterBuffers, device_->info().name, size);
   }
   const gpu::PrefilterTable& table = layout->table;

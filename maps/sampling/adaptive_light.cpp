@@ -33,7 +33,8 @@ constexpr visibility::IntegerOption kLevels{"levels", 0, 6, 3,
 // Fraction of all pixels, so that pictures of any size are refined alike. With 0.02, 14 of the 81 maps of the paper's
 // figure 1 are left, and V is within 1.3 times the error of 128 fixed maps (docs/adaptive-light.md).
 constexpr visibility::RealOption kDifferingShare{
-    "epsilon", 0, 1, 0.02, "share of differing pixels from which a cell is split; shareOf: of which number"};
+    "epsilon", 0, 1, 0.02,
+    "fraction of differing pixels from which a cell is split; shareOf: the number to which it relates"};
 constexpr visibility::RealOption kGamma{"gamma", 0, 1, 0.02,
                                         "relative difference in height from which two maps count as different at a "
                                         "pixel; gammaOf: relative to which height"};
@@ -79,7 +80,7 @@ constexpr visibility::IntegerOption kMostMaps{"maps", 4, 4225, 512, "largest num
 constexpr visibility::IntegerOption kAdaptiveSize = map_size(512);
 
 visibility::MeshVerdict adaptive_light_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("hard shadows from as many points of the light as their maps differ", mesh);
+  return judge_for_maps("hard shadows from more and more points of the light, as long as their maps differ", mesh);
 }
 
 }  // namespace

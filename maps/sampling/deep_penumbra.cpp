@@ -24,7 +24,9 @@ constexpr visibility::RealOption kBound{"bound", 0, 0.5, 0.01,
 constexpr visibility::IntegerOption kDeepSize = map_size(256);
 
 visibility::MeshVerdict deep_penumbra_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("V of the light samples along the rays of one map, off by a texel beside them", mesh);
+  return judge_for_maps(
+      "V of the light samples along the rays through one map's texels; receivers elsewhere are off by up to a texel",
+      mesh);
 }
 
 }  // namespace

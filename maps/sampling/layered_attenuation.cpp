@@ -31,7 +31,10 @@ constexpr visibility::IntegerOption kLayeredSize = map_size(256);
 constexpr double kDepthRounding = 0x1p-20;
 
 visibility::MeshVerdict layered_attenuation_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("light samples counted on the surfaces that they see, off by a texel beside them", mesh);
+  return judge_for_maps(
+      "light samples counted on the surfaces that they see, along the rays through texels; receivers elsewhere are off "
+      "by up to a texel",
+      mesh);
 }
 
 }  // namespace

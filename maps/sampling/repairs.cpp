@@ -11,10 +11,10 @@ namespace penumbra::maps {
 visibility::ErrorRepairs sampling_repairs(const visibility::MethodDescription& method,
                                           const visibility::MethodOptions& given) {
   return map_repairs(method, given,
-                     {.many_views = "it looks from points all over the light; more of them are its repair",
-                      .layers = "from each of its points only the nearest surface matters",
+                     {.many_views = "it uses maps from points all over the light; more of these points are its repair",
+                      .layers = "for each of its points only the nearest surface matters",
                       .fusion = "points of the light are counted: nothing is added or joined",
-                      .gaps = "texels are asked, not projected: there is nothing between them"});
+                      .gaps = "texels are looked up, not projected: there are no gaps between them"});
 }
 
 }  // namespace penumbra::maps

@@ -28,7 +28,8 @@ enum class Attenuation : std::uint8_t { none, linear, quadratic };
 constexpr visibility::IntegerOption kDirections{"directions", 1, 1024, 16, "directions around a pixel"};
 constexpr visibility::IntegerOption kSteps{"steps", 1, 1024, 8, "pixels read along each direction"};
 constexpr visibility::RealOption kAngleBias{
-    "angleBias", 0, 89, 30, "degrees above the tangent below which nothing hides: folds of a coarse mesh shade less"};
+    "angleBias", 0, 89, 30,
+    "degrees above the tangent up to which nothing hides light, so that folds of a coarse mesh shade less"};
 constexpr visibility::ChoiceOption kAttenuation{
     "attenuation",
     {{"none", Attenuation::none}, {"linear", Attenuation::linear}, {"quadratic", Attenuation::quadratic}},
@@ -93,7 +94,8 @@ visibility::MeshVerdict hbao_verdict(const mesh::Diagnosis& mesh) {
 
 std::unique_ptr<visibility::Method> make_hbao(const visibility::MethodOptions& options) {
   visibility::MethodDescription description = screen_description("hbao", "Bavoil, Sainz and Dimitrov 2008");
-  description.exact_for = "nothing; without attenuation the share of directions, not of light, of a height field";
+  description.exact_for =
+      "nothing; without attenuation, the fraction of directions (not of light) that a height field leaves visible";
   description.verdict_on = hbao_verdict;
   for (const auto& option :
        {kDirections.description(), kSteps.description(), kAngleBias.description(), kAttenuation.description()})

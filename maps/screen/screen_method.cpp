@@ -62,8 +62,8 @@ void ScreenMethod::prepare_view(const visibility::ViewSamples& samples) {
   std::optional<ScreenPicture> picture = ScreenPicture::of(samples);
   if (!picture) {
     throw InputError(
-        "method {} looks at the picture of a camera, and these view samples are not what a camera's pixels see: take "
-        "another method (edge-scatter, view-sample, raytrace)",
+        "method {} uses the picture of a camera, but these view samples are not at a camera's pixels: take another "
+        "method (edge-scatter, view-sample, raytrace)",
         description_.name);
   }
   picture_ = *std::move(picture);
@@ -118,7 +118,7 @@ visibility::ErrorRepairs screen_repairs(const visibility::MethodDescription& /*m
                                         const visibility::MethodOptions& /*given*/) {
   visibility::ErrorRepairs repairs;
   for (const visibility::ErrorCause cause : visibility::kErrorCauses)
-    repairs.alone.push_back(inseparable(cause, "it asks the camera's picture, not maps of a light"));
+    repairs.alone.push_back(inseparable(cause, "it uses the camera's picture, not maps of a light"));
   return repairs;
 }
 

@@ -87,14 +87,15 @@ struct Ssao {
 };
 
 visibility::MeshVerdict ssao_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("how much of a ball around the view sample lies before what the camera sees", mesh);
+  return judge_for_maps(
+      "the fraction of a ball around the view sample that is in front of the surfaces that the camera sees", mesh);
 }
 
 }  // namespace
 
 std::unique_ptr<visibility::Method> make_ssao(const visibility::MethodOptions& options) {
   visibility::MethodDescription description = screen_description("ssao", "Mittring 2007");
-  description.exact_for = "nothing; 1 on a plane, and half where two planes meet at a right angle";
+  description.exact_for = "nothing; V is 1 on a plane, and one half where two planes meet at a right angle";
   description.verdict_on = ssao_verdict;
   for (const auto& option : {kSamples.description(), kAround.description(), kRange.description()})
     description.options.push_back(option);

@@ -27,7 +27,7 @@ namespace {
 
 visibility::MeshVerdict arvo_verdict(const mesh::Diagnosis& mesh) {
   return judge_for_maps(
-      "penumbrae around the hard shadow of the light's centre, as far as its border is in the picture", mesh);
+      "penumbrae around the hard shadow of the light's centre, where its border is visible in the picture", mesh);
 }
 
 double light_at(std::uint32_t falloff, double t) {

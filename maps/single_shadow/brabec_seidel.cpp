@@ -20,10 +20,11 @@ namespace {
 
 constexpr auto kIds = visibility::flag_option(
     "ids", true,
-    "on: surfaces of a view sample's own object do not shade it, so that no bias is needed; off: by depth");
+    "on: surfaces of a view sample's own object do not shade it, so that no bias is needed; off: depths alone decide");
 
 visibility::MeshVerdict brabec_seidel_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("penumbrae around the hard shadow of the light's centre, of the nearest texel alone", mesh);
+  return judge_for_maps("penumbrae around the hard shadow of the light's centre, determined by the nearest texel alone",
+                        mesh);
 }
 
 }  // namespace

@@ -18,10 +18,10 @@ namespace {
 
 MapRepairs one_edge() {
   return {.ends_at_points = true,
-          .layers = "it asks the nearest surfaces; no form of the method asks more",
-          .fusion = "one edge alone decides, the nearest: nothing is added or joined",
-          .gaps = "no texel is projected: there is nothing between them",
-          .falloff = "how light falls across the penumbra of that edge is the method: it has no other form"};
+          .layers = "it reads only the nearest surfaces; no form of the method reads more",
+          .fusion = "only the nearest edge decides: nothing is added or joined",
+          .gaps = "no texel is projected: there are no gaps between them",
+          .falloff = "the fall of light across the penumbra of that edge is the method itself: it has no other form"};
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ visibility::MethodDescription single_shadow_description(SingleShadow method) {
 }
 
 visibility::MeshVerdict outer_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it alone", mesh);
+  return judge_for_maps("the hard shadow of the light's centre, with penumbrae outside of it only", mesh);
 }
 
 visibility::ErrorRepairs single_shadow_repairs(const visibility::MethodDescription& method,
@@ -63,9 +63,8 @@ std::optional<std::string> cut_search_warning(const visibility::MethodOptions& o
   if (found == counters.end() || found->second == 0) return std::nullopt;
   const auto radius = options.find(kSearchRadius.key);
   return fmt::format(
-      "penumbrae may reach beyond radius={} texels, where the search ended, at {} view samples: there they are cut; "
-      "take "
-      "a larger radius (at most {}) or a smaller size",
+      "penumbrae may extend beyond radius={} texels, where the search ended, at {} view samples, and are cut there; "
+      "take a larger radius (at most {}) or a smaller size",
       radius == options.end() ? std::to_string(kSearchRadius.otherwise) : radius->second, found->second,
       kSearchRadius.most);
 }

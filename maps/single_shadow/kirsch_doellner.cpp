@@ -27,7 +27,7 @@ namespace penumbra::maps {
 namespace {
 
 visibility::MeshVerdict kirsch_doellner_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("the hard shadow of the light's centre, with penumbrae inside of it alone", mesh);
+  return judge_for_maps("the hard shadow of the light's centre, with penumbrae inside of it only", mesh);
 }
 
 /// Returns a warning if the width map cannot separate occluders from receivers: shadows then have no penumbra.
@@ -38,11 +38,10 @@ std::optional<std::string> kirsch_doellner_warning(const visibility::MethodOptio
     return found == counters.end() ? 1U : found->second;
   };
   if (count("occludingTriangles") == 0)
-    return "kirsch-doellner: nothing casts but the ground, the largest object: its shadows are hard";
+    return "kirsch-doellner: only the ground (the largest object) casts shadow, so its shadows are hard";
   if (count("groundObjects") == 0)
-    return "kirsch-doellner: some receiver casts no shadow, so that all casters are taken for occluders: where a "
-           "caster "
-           "lies behind them shadows are hard";
+    return "kirsch-doellner: some receiver casts no shadow, so all casters count as occluders: shadows are hard where "
+           "one caster lies behind another";
   return std::nullopt;
 }
 

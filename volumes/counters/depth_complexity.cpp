@@ -71,7 +71,7 @@ visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
           {{mesh.boundary_loops, "open boundaries, where variant=laine is only approximate"},
            {mesh.non_manifold_edges.count, "non-manifold edges, where variant=laine is only approximate"},
            {mesh.zero_area_triangles.count,
-            "triangles without area, which cast nothing, and where variant=laine is only approximate"}})};
+            "triangles without area, which cast no shadow, and where variant=laine is only approximate"}})};
 }
 
 /// Returns whether vector units support the options: variant=soup, which skips edges that are not silhouettes.

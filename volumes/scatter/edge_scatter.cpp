@@ -47,7 +47,7 @@ visibility::MeshVerdict verdict_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
           visibility::reason_with("signed multiplicities hold for any soup, and every pair is decided exactly", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
-                                   {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                                   {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 bool is_planar_light(const visibility::Light& light) {

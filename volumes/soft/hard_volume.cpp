@@ -19,10 +19,10 @@ namespace penumbra::volumes {
 namespace {
 
 visibility::MeshVerdict hard_volume_verdict(const mesh::Diagnosis& mesh) {
-  return {
-      visibility::Verdict::approximate,
-      visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
-                              mesh, {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+  return {visibility::Verdict::approximate,
+          visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
+                                  mesh,
+                                  {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 enum class Variant { z_fail, z_pass, zp_plus, cc, split, hierarchical, tiles };

@@ -30,7 +30,7 @@ visibility::MeshVerdict plateaus_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::approximate,
       visibility::reason_with("a hard shadow, and around it a penumbra by distance alone: umbrae are too large", mesh,
-                              {{mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+                              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ visibility::MeshVerdict soft_irregular_verdict(const mesh::Diagnosis& mesh) {
               "another hides the centre is light that leaks",
               mesh,
               {{mesh.boundary_edges.count, "boundary edges: the surface counts triangle by triangle"},
-               {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+               {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 visibility::MethodDescription describe_soft_irregular() {

@@ -87,7 +87,7 @@ visibility::MeshVerdict soft_volume_verdict(const mesh::Diagnosis& mesh) {
               {{mesh.boundary_edges.count,
                 "boundary edges: the surface counts triangle by triangle, a solid that is "
                 "not closed twice"},
-               {mesh.zero_area_triangles.count, "triangles without area, which cast nothing"}})};
+               {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 }  // namespace

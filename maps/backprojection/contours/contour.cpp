@@ -33,7 +33,8 @@ visibility::MethodDescription contour_description() {
       .family = visibility::Family::image,
       .paper = "Guennebaud et al. 2007",
       .output = visibility::Output::scalar,
-      .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
+      .exact_for =
+          "nothing; in the limit of large maps, scenes in which all casters lie in one plane parallel to the light",
       .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,

@@ -26,16 +26,16 @@ constexpr std::uint32_t kMostWalkedCells = 1u << 14;
 }  // namespace
 
 visibility::MeshVerdict contour_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("outlines of what the light's centre sees, each closed and by itself", mesh);
+  return judge_for_maps("closed outlines of the surfaces that the light's centre sees, each treated separately", mesh);
 }
 
 visibility::ErrorRepairs contour_repairs(const visibility::MethodDescription& method,
                                          const visibility::MethodOptions& given) {
   return map_repairs(method, given,
                      {.ends_at_points = true,
-                      .layers = "outlines are of the nearest surfaces; no form of the method has more",
+                      .layers = "outlines come from the nearest surfaces; no form of the method uses more layers",
                       .fusion = "outlines that overlap are added; no form of the method joins them",
-                      .gaps = "outlines are closed around connected texels: there is nothing between them"});
+                      .gaps = "outlines are closed around connected texels: there are no gaps between them"});
 }
 
 MapRecipe contour_recipe(const render::Device& device, visibility::MethodDescription description,

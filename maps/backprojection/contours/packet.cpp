@@ -49,8 +49,8 @@ Extent extent_of(const std::string& text) {
   if (!whole || extent.width == 0 || extent.height == 0 ||
       std::uint64_t{extent.width} * extent.height > gpu::kMostPacketPixels) {
     throw UsageError(
-        "method packet: option {} is \"{}\"; it must be WxH, pixels across and down, 1x1 or more and no more than {} "
-        "pixels in all",
+        "method packet: option {} is \"{}\"; it must be WxH: the number of pixels across and down, at least 1x1 and at "
+        "most {} pixels in all",
         kPacket, text, gpu::kMostPacketPixels);
   }
   return extent;
@@ -63,7 +63,7 @@ std::string packet_text(const visibility::MethodOptions& options) {
 }
 
 constexpr visibility::IntegerOption kSubLights{
-    "sublights", 1, 16, 1, "parts of the light along each axis, each with a map of its own; V is their mean"};
+    "sublights", 1, 16, 1, "number of parts of the light along each axis, each with a separate map; V is their mean"};
 constexpr auto kHierarchy =
     visibility::flag_option("hierarchy", true, "find contours below nodes of a multi-scale pyramid, not cell by cell");
 constexpr visibility::RealOption kDivergence{
@@ -85,7 +85,8 @@ visibility::MethodDescription packet_description(const visibility::MethodOptions
       .family = visibility::Family::image,
       .paper = "Yang et al. 2009",
       .output = visibility::Output::scalar,
-      .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
+      .exact_for =
+          "nothing; in the limit of large maps, scenes in which all casters lie in one plane parallel to the light",
       .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = contour_verdict,

@@ -28,11 +28,11 @@ namespace penumbra::maps {
 namespace {
 
 constexpr auto kPatchFill = fill_option(gpu::kFillEdges);
-constexpr visibility::ChoiceOption kForm{
-    "form",
-    {{"patch", gpu::kFormPatch}, {"sphere", gpu::kFormSphere}},
-    gpu::kFormPatch,
-    "rectangles on the light, or bounding spheres before the disk of the light's area or a sphere (without fill)"};
+constexpr visibility::ChoiceOption kForm{"form",
+                                         {{"patch", gpu::kFormPatch}, {"sphere", gpu::kFormSphere}},
+                                         gpu::kFormPatch,
+                                         "form of a patch: a rectangle on the light, or a bounding sphere in front of "
+                                         "the light (a disk of its area, or a sphere; without fill)"};
 constexpr visibility::IntegerOption kDeepestLayers{
     "layers", 1, 16, 1,
     "number of layers of surfaces that a receiver searches; the deepest layer that hides some of the light counts"};
@@ -50,7 +50,8 @@ visibility::MethodDescription backproject_description(const visibility::MethodOp
       .family = visibility::Family::image,
       .paper = "Guennebaud et al. 2006",
       .output = visibility::Output::scalar,
-      .exact_for = "nothing; in the limit of large maps, where all that shades lies in one plane parallel to the light",
+      .exact_for =
+          "nothing; in the limit of large maps, scenes in which all casters lie in one plane parallel to the light",
       .lights = visibility::kPlanarLights,
       .options = compared_map_option_descriptions(),
       .verdict_on = backproject_verdict,

@@ -30,22 +30,23 @@
 namespace penumbra::maps {
 namespace {
 
-constexpr visibility::ChoiceOption kOccluder{"occluder",
-                                             {{"patch", gpu::kOccluderPatch},
-                                              {"quad", gpu::kOccluderQuad},
-                                              {"triangle", gpu::kOccluderTriangle},
-                                              {"rect", gpu::kOccluderRect}},
-                                             gpu::kOccluderQuad,
-                                             "a texel's rectangle; a quad between four centres; with a triangle where "
-                                             "three of them hide; of a level, the rectangle "
-                                             "around what there is"};
+constexpr visibility::ChoiceOption kOccluder{
+    "occluder",
+    {{"patch", gpu::kOccluderPatch},
+     {"quad", gpu::kOccluderQuad},
+     {"triangle", gpu::kOccluderTriangle},
+     {"rect", gpu::kOccluderRect}},
+    gpu::kOccluderQuad,
+    "occluder of a texel: its rectangle; a quad between four centres; the same with a triangle where only three of "
+    "them hide light; on a coarse level, the rectangle around a block's non-empty texels"};
 constexpr auto kBitmaskFill = fill_option(gpu::kFillNone);
 constexpr visibility::IntegerOption kJoinedLayers{"layers", 1, 16, 1,
                                                   "number of layers of surfaces that a receiver searches"};
 constexpr auto kBitmaskSearch = search_option(Search::mssm);
 
 visibility::MeshVerdict bitmask_verdict(const mesh::Diagnosis& mesh) {
-  return judge_for_maps("the surfaces that the light's centre sees, each pair decided by their texels", mesh);
+  return judge_for_maps(
+      "the surfaces that the light's centre sees; their texels decide each pair of view sample and light sample", mesh);
 }
 
 }  // namespace

@@ -79,9 +79,8 @@ ErrorRepairs backproject_repairs(const MethodDescription& method, const MethodOp
 
 ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& given) {
   const MethodOptions options = visibility::complete_options(method, given);
-  const std::string left_out =
-      fmt::format("the same texels cannot be left out of another method; samples=0 leaves out none (here {})",
-                  options.at("samples"));
+  const std::string left_out = fmt::format(
+      "no other method can leave out the same texels; samples=0 leaves out none (here {})", options.at("samples"));
   ErrorRepairs repairs = map_repairs(method, given, {.ends_at_points = true, .fusion = left_out, .gaps = left_out});
   repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   if (options.at("samples") != "0") {
@@ -90,7 +89,7 @@ ErrorRepairs peel_repairs(const MethodDescription& method, const MethodOptions& 
     for (RepairRun& run : resolution.runs)
       run.options.insert_or_assign("samples", std::string(1, '0'));  // g++ 12 warns of "0"
     resolution.runs.insert(resolution.runs.begin(), {method.name, options_with(method, given, {{"samples", "0"}})});
-    resolution.words = "all texels, then half and a quarter as wide, and the limit of that";
+    resolution.words = "all texels, then texels half and a quarter as wide, and the limit of these runs";
   } else if (options.at("select") == "contribution") {
     const MethodOptions alike{{"layers", options.at("layers")}, {"search", "none"}};
     MethodOptions adding = patch_options(options, alike);
@@ -110,14 +109,15 @@ ErrorRepairs bitmask_repairs(const MethodDescription& method, const MethodOption
       method, given,
       {.ends_at_points = true,
        .fusion = "bits are joined: nothing is counted twice",
-       .gaps = options.at("occluder") == "rect" ? "rectangles of blocks have no form that fills what is between them"
-                                                : "its occluders share their corners: there is nothing between them"});
+       .gaps = options.at("occluder") == "rect" ? "no form of the method fills the gaps between rectangles of blocks"
+                                                : "its occluders share their corners: there are no gaps between them"});
   repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   if (patches) {
     repair_of(repairs, ErrorCause::gaps) = {
         .cause = ErrorCause::gaps,
         .runs = {{method.name, options_with(method, given, {{"fill", "diagonal"}})}},
-        .words = "patches that reach to their neighbours, the diagonal one too (fill=diagonal); overlaps do no harm"};
+        .words =
+            "patches that extend to their neighbours, including the diagonal one (fill=diagonal); overlaps do no harm"};
   }
   for (RepairRun& run : repairs.one_view) {
     run.options["layers"] = "16";
@@ -127,11 +127,11 @@ ErrorRepairs bitmask_repairs(const MethodDescription& method, const MethodOption
 }
 
 ErrorRepairs layer_ray_repairs(const MethodDescription& method, const MethodOptions& given) {
-  ErrorRepairs repairs =
-      map_repairs(method, given,
-                  {.ends_at_points = true,
-                   .fusion = "rays are stopped or not: nothing is added",
-                   .gaps = "walls between neighbouring texels close gaps and may close what is open: no form tells"});
+  ErrorRepairs repairs = map_repairs(method, given,
+                                     {.ends_at_points = true,
+                                      .fusion = "rays are stopped or not: nothing is added",
+                                      .gaps = "walls between neighbouring texels close gaps, but may also close real "
+                                              "openings: no form of the method distinguishes the two"});
   repair_of(repairs, ErrorCause::layers) = more_layers(method, given);
   for (RepairRun& run : repairs.one_view) run.options["layers"] = "16";
   return repairs;

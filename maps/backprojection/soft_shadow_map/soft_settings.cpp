@@ -22,7 +22,10 @@ constexpr visibility::RealOption kNoBias{
 constexpr visibility::IntegerOption kReceiverSize{"receiverSize", 8, 4096, 256,
                                                   "texels on a side of the map of receivers, which holds V"};
 constexpr visibility::ChoiceOption kPasses{
-    "passes", {{"1", 1u}, {"2", 2u}}, 1u, "2: the farthest surfaces too, and the smaller V of the two"};
+    "passes",
+    {{"1", 1u}, {"2", 2u}},
+    1u,
+    "2: a second pass with the farthest surfaces; the smaller V of both passes counts"};
 constexpr visibility::ChoiceOption kPatches{"patches",
                                             {{"top", SoftPatches::top}, {"bottom", SoftPatches::bottom}},
                                             SoftPatches::top,
@@ -51,12 +54,13 @@ visibility::MeshVerdict soft_shadow_map_verdict(const mesh::Diagnosis& mesh) {
 }
 
 visibility::ErrorRepairs repairs(const visibility::MethodDescription& method, const visibility::MethodOptions& given) {
-  return map_repairs(method, given,
-                     {.doubled = {"size", "receiverSize"},
-                      .layers = "passes=2 adds the farthest surfaces; no form of the method has those between",
-                      .fusion = "patches are added, or the smaller V of two passes taken; no form joins them",
-                      .gaps = "no form of the method fills what is between patches",
-                      .bias = {{"bias", "0"}}});
+  return map_repairs(
+      method, given,
+      {.doubled = {"size", "receiverSize"},
+       .layers = "passes=2 adds the farthest surfaces; no form of the method has the surfaces in between",
+       .fusion = "patches are added, or the smaller V of two passes taken; no form joins them",
+       .gaps = "no form of the method fills the gaps between patches",
+       .bias = {{"bias", "0"}}});
 }
 
 /// Returns a warning if there are pixels on occluders and no other method shades them.
@@ -67,8 +71,8 @@ std::optional<std::string> warning(const visibility::MethodOptions& options,
   // The options include those of the whole family, which are not declared here.
   const auto self = options.find(kSelf.name());
   if (self != options.end() && self->second != kSelf.name_of(SoftSelf::none)) return std::nullopt;
-  return "soft-shadow-map has no shadows on what casts shadows: the pixels that show it (counter pixelsOnOccluders) "
-         "see the light above their horizon; method option self=backproject shades them";
+  return "soft-shadow-map draws no shadows on casters: pixels that show a caster (counter pixelsOnOccluders) see all "
+         "of the light above their horizon; method option self=backproject shades them";
 }
 
 }  // namespace
@@ -106,18 +110,18 @@ SoftSettings soft_settings(const visibility::ParsedOptions& parsed) {
                               .self = parsed[kSelf]};
   if (settings.precision == SoftPrecision::fp16 && settings.form == SoftForm::scatter) {
     throw UsageError(
-        "method soft-shadow-map: 16-bit floats depend on the order of sums, and scattered ones have none; take "
-        "form=gather, which adds patches in the order of their texels, or precision=fp32");
+        "method soft-shadow-map: sums of 16-bit floats depend on their order, and scattered ones have no fixed order; "
+        "take form=gather, which adds patches in the order of their texels, or precision=fp32");
   }
   if (settings.patches == SoftPatches::bottom && settings.passes > 1) {
     throw UsageError(
-        "method soft-shadow-map: patches=bottom says what one pass draws, and passes=2 draws the farthest surfaces "
-        "anyway; take one of the two");
+        "method soft-shadow-map: patches=bottom selects what a single pass draws, and passes=2 draws the farthest "
+        "surfaces anyway; take one of the two");
   }
   if (settings.patches == SoftPatches::bottom && parsed[kDepth] != DepthUse::first) {
     throw UsageError(
-        "method soft-shadow-map: patches=bottom draws the farthest surfaces, so that depth= has nothing to choose; "
-        "take one of the two");
+        "method soft-shadow-map: patches=bottom draws the farthest surfaces, to which depth= does not apply; take one "
+        "of the two");
   }
   return settings;
 }

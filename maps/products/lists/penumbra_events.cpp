@@ -180,9 +180,8 @@ std::vector<std::uint32_t> PenumbraEvents::compress(const MapSource& source, std
   most_->read<std::uint32_t>(std::span(&ended, 1));
   if (ended != 0) {
     throw ResourceError(
-        "deep-penumbra: up to {} events on a ray are more than {} sorts before it ends a loop; take fewer "
-        "--light-samples "
-        "or a smaller size",
+        "deep-penumbra: there are up to {} events on a ray, more than {} can sort before it ends a loop; take fewer "
+        "--light-samples or a smaller size",
         capacity, device_->info().name);
   }
   std::vector<std::uint32_t> counts(texels);
