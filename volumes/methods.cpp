@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of the shadow-volume family, a row a method: its description, and which engines it runs on. The papers are
-// in README.md and on the methods' pages.
+// The table of the shadow-volume family, one row for each method: its description, and which engines it runs on. The
+// papers are in README.md and on the methods' pages.
 
 #include "volumes/methods.hpp"
 

@@ -61,8 +61,8 @@ struct Eye {
   int axis = 2;
   double sign = 1;
 
-  /// Returns x and y along the other two axes, z away from the light. Homogeneous: the place is (x, y) / z; for a sun
-  /// (x, y).
+  /// Returns a homogeneous place: x and y along the other two axes, z away from the light. The place itself is (x, y) /
+  /// z; for a sun it is (x, y).
   [[nodiscard]] glm::dvec3 see(const glm::vec3& point) const {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     const glm::dvec3 x(point);
@@ -118,7 +118,7 @@ class Polygon {
   std::size_t count_;
 };
 
-/// Returns the region of the face's window in which a triangle may be seen; without points it is seen nowhere.
+/// Returns the region of the face's window in which a triangle may be seen; a region without points means nowhere.
 Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners) {
   const std::array seen{face.eye.see(corners[0]), face.eye.see(corners[1]), face.eye.see(corners[2])};
   double largest = 0;
@@ -126,13 +126,14 @@ Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners
   Footprint footprint;
   if (face.eye.sun) {
     for (const glm::dvec3& at : seen) footprint.add(glm::dvec2(at));
-    // A quotient, a product and a difference, of at most twice the largest coordinate (center[axis] is largest).
+    // Error of a quotient, a product and a difference, of at most twice the largest coordinate (center[axis] is
+    // largest).
     footprint.error = 0;
     for (const glm::vec3& corner : corners)
       footprint.error = std::max(footprint.error, 0x1p-50 * 4 * glm::length(glm::dvec3(corner)));
     return footprint;
   }
-  // Coordinates are rounded once, a clip's value four times, of at most 2 · largest; so is a new corner.
+  // A coordinate is rounded once, the value of a clip (at most 2 · largest) four times; a new corner likewise.
   const double slack = 0x1p-46 * largest;
   const glm::dvec2 lower = face.light_pixels.lower(), upper = face.light_pixels.upper();
   Polygon polygon(seen);
@@ -140,13 +141,14 @@ Footprint footprint_of(const Face& face, const std::array<glm::vec3, 3>& corners
   polygon.cut([&](const glm::dvec3& x) { return upper.x * x.z - x.x; }, slack);
   polygon.cut([&](const glm::dvec3& x) { return x.y - lower.y * x.z; }, slack);
   polygon.cut([&](const glm::dvec3& x) { return upper.y * x.z - x.y; }, slack);
-  polygon.cut([](const glm::dvec3& x) { return x.z; }, slack);  // a window without width is seen from both sides
+  polygon.cut([](const glm::dvec3& x) { return x.z; }, slack);  // with a window of zero width, the other four clips
+                                                                // keep points with z < 0, too
   double nearest = std::numeric_limits<double>::max();
   for (const glm::dvec3& at : polygon.corners()) nearest = std::min(nearest, at.z);
   footprint.everywhere = !(nearest > 0x1p8 * slack);
   if (footprint.everywhere) return footprint;
   for (const glm::dvec3& at : polygon.corners()) footprint.add(glm::dvec2(at) / at.z);
-  footprint.error = 16 * slack / nearest;  // of a corner, of the five clips, and of a place of size 1
+  footprint.error = 16 * slack / nearest;  // includes a corner's error, the five clips, and a place of size 1
   return footprint;
 }
 
@@ -244,7 +246,8 @@ void AliasFree::evaluate(const visibility::Tile& tile) {
       face.depth.push_back(face.eye.see(p).z);
       reach = std::max(reach, glm::length(glm::dvec3(p)));
     }
-    // Error for a face: two differences and a quotient, of at most 1; for a sun as in footprint_of.
+    // The error of a place on a face is that of two differences and a quotient, of at most 1; for a sun, see
+    // footprint_of.
     face.light_pixels = LightPixels(places, face.eye.sun ? 0x1p-48 * reach : 0x1p-50, per_pixel_);
     longest_ = std::max<std::uint64_t>(longest_, face.light_pixels.longest_list());
     bytes += face.light_pixels.bytes() + face.pixels.size() * (sizeof(std::uint32_t) + sizeof(double));

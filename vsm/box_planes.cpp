@@ -25,8 +25,8 @@ BoxPlanes::BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& 
     back += side < -error ? 1 : 0;
   }
   one_side_ = front == 4 || back == 4;
-  // With l in front and p behind, p sees the corners in the order in which all f are positive; otherwise they are
-  // negative.
+  // If l is in front of the triangle and p behind it, p sees the corners in the order that makes all f positive. In the
+  // opposite case all f are negative.
   const double turn = back == 4 ? -1 : 1;
   for (std::size_t e = 0; e < 3; ++e) {
     const glm::dvec3 &a = corners[e], &b = corners[(e + 1) % 3];
@@ -41,18 +41,19 @@ BoxPlanes::BoxPlanes(const std::array<glm::dvec3, 3>& corners, const LightTree& 
 }
 
 BoxPlanes::Answer BoxPlanes::look(const ReceiverTree::Node& box, std::uint32_t& open) const {
-  // The orientation of the edges differs between light samples: no earlier result holds.
+  // The orientation of the edges differs between light samples, so no earlier result is valid.
   if (!one_side_) open |= kEdges;
   // Largest distance of the box's points p from each corner.
   std::array<double, 3> far{};
   for (std::size_t i = 0; i < 3; ++i) far[i] = glm::length(corners_[i] - box.middle) + box.radius;
-  bool some_in = false, some_out = false;  // whole edges, for triangles that may have light on both sides
+  bool some_in = false, some_out = false;  // for some edge: the box is certainly in all, or outside of all, of its
+                                           // half-spaces
   for (std::size_t e = 0; e < 3; ++e) {
     if ((open >> 4 * e & 15) == 0) {
       some_in = true;
       continue;
     }
-    // f changes with l by |δl| |a − p| |b − p|; for a sun by |δl| |a − p| |b − a|.
+    // If l moves by δl, f changes by up to |δl| |a − p| |b − p|; for a sun by up to |δl| |a − p| |b − a|.
     const double length = sun_ ? glm::length(corners_[(e + 1) % 3] - corners_[e]) : far[(e + 1) % 3];
     const double beside = off_ * far[e] * length;
     int out = 0;

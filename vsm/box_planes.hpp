@@ -14,10 +14,11 @@ namespace penumbra::vsm {
 /// Classifies boxes of view samples by whether a triangle is between them and a box of light samples. Inside vsm/ only.
 ///
 /// The segment p→l passes the edge a→b on the side given by the sign of f(p, l) = det(l − p, a − p, b − p), which is
-/// affine in p and in l. So for a box of light samples its four corners decide, and each gives a plane through the
-/// edge, f as a function of p alone: between them is the edge's penumbra wedge. With the triangle's own plane these are
-/// thirteen half-spaces; p sees no light sample of the box if it is in all of them, and all light samples (as far as
-/// this triangle is concerned) if it is outside of the four of an edge, or of the triangle's plane.
+/// affine in p and in l. So for a box of light samples its four corners decide. Each corner gives a plane through the
+/// edge, with f a function of p alone; the edge's penumbra wedge is between these planes. With the triangle's own plane
+/// there are thirteen half-spaces. p sees no light sample of the box if it is in all of them. It sees all light samples
+/// (as far as this triangle is concerned) if it is outside of all four half-spaces of an edge, or of the half-space of
+/// the triangle's plane.
 class BoxPlanes {
  public:
   static constexpr std::uint32_t kAll =
@@ -33,7 +34,7 @@ class BoxPlanes {
 
   enum class Answer : std::uint8_t { beside, hidden, open };
   /// Classifies a box. `open`: on input the half-spaces that an enclosing box was not certainly in; on return those
-  /// that this box is not in.
+  /// that this box is not certainly in.
   [[nodiscard]] Answer look(const ReceiverTree::Node& box, std::uint32_t& open) const;
 
  private:

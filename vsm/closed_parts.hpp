@@ -38,12 +38,12 @@ ClosedParts find_closed_parts(const visibility::SceneFloats& scene);
 /// Returns a bit for each part (from 1) whose box is certainly separate from the light's. Only these parts have
 /// dispensable triangles. `frame` is scaled by `scale`.
 std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::DeviceLight& frame, float scale);
-/// Returns the parts separate from a sphere, or from a sun, which is separate from all.
+/// Returns the parts separate from a sphere. A sun is separate from all parts.
 std::uint32_t parts_apart_from(const ClosedParts& closed, const visibility::Light& light);
 
 /// Returns for each triangle the number of its part if the whole light is certainly in front of the triangle, wound by
-/// `turn`, which makes it dispensable to view samples outside of the part (docs/view-sample.md, "Closed casters"); else
-/// 0.
+/// `turn`; else 0. Such a triangle is dispensable to view samples outside of the part (docs/view-sample.md, "Closed
+/// casters").
 std::vector<std::uint8_t> find_dispensable(const ClosedParts& closed, const visibility::SceneFloats& scene,
                                            const visibility::DeviceLight& frame, float scale);
 

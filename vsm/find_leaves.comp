@@ -6,6 +6,7 @@
 // First pass of view-sample mapping: light samples decided by each view sample's own plane and the light's plane, and
 // the leaves of the tree that the shaft from a block of view samples to the light meets. Where Sintorn et al. rasterise
 // footprints in light space, this pass traverses a hierarchy, which needs no light frustum: the light may be anywhere.
+// Bounds: docs/view-sample.md.
 
 layout(binding = 5) uniform usamplerBuffer nodes;         // 2 texels for each child: (centre, reference), (half extent,
                                                           // the closed part outside of which everything below is
@@ -42,8 +43,8 @@ bool outside_box(ivec3 at, int texel) {
   return any(lessThan(at, ordered(texelFetch(parts, texel).xyz))) || any(greaterThan(at, ordered(texelFetch(parts, texel + 1).xyz)));
 }
 
-// Returns bit k if every view sample `on` is outside of part k, or on a face of its box that the part does not reach
-// there.
+// Returns a word with bit k set if every view sample that is `on` is outside of part k, or on a face of the part's box
+// that the part does not reach there.
 uint parts_around(bool on) {
   uint outside_of = 0;
   const ivec3 at = ordered(floatBitsToUint(p));
@@ -60,8 +61,8 @@ uint parts_around(bool on) {
   return outside_of;
 }
 
-// Pushes the root of this dispatch's part of the tree on the stack; or, if a leaf lies above the part's level, collects
-// the leaf in the first of the parts that it could belong to. Returns the sizes of stack and leaves.
+// Pushes the root of this dispatch's part of the tree on the stack. If the tree has a leaf above the part's level
+// instead, collects that leaf in the first of the parts that it could belong to. Returns the sizes of stack and leaves.
 uvec2 first_of_part() {
   uint node = 0;
   uvec2 sizes = uvec2(1, 0);
@@ -126,7 +127,7 @@ void walk(bool on, float side, uint header, uint outside_of) {
     }
     if (emitted < kChunk && stack_size > 0) break;        // the driver ended the inner loop
   }
-  // Some drivers for processors end loops after 65535 iterations, which must be reported.
+  // Some drivers that run on processors end loops after 65535 iterations, which must be reported.
   if (stack_size > 0) atomicOr(unfinished, 1u);
 }
 
@@ -138,7 +139,7 @@ void main() {
   bool all_blocked = false;
   const bool first_part = push.part == 0;
 
-  // Condition (2): p strictly on an emitting side of the light's plane.
+  // Condition (2) of docs/definitions.md: p is strictly on an emitting side of the light's plane.
   if (on && abs(level) <= level_error) {
     if (first_part) ask(kAnyTriangle, kAllSamples);
     on = false;
@@ -147,8 +148,8 @@ void main() {
     all_blocked = true;
     on = false;
   }
-  // Condition (1): the light sample strictly above the carrier's plane, which is one half-plane of the light. (bound
-  // horizon)
+  // Condition (1) of docs/definitions.md: the light sample is strictly above the carrier's plane. The part of the light
+  // above that plane is bounded by one line. (bound horizon)
   if (on) {
     const vec3 above = vec3(dot(normal, push.u), dot(normal, push.v), dot(normal, towards));
     const float error = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(p)) + push.deviation;

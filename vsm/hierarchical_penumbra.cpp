@@ -139,7 +139,8 @@ class HierarchicalPenumbra::Caster {
       ++boxes.beside;
       return;
     }
-    // The triangle does not hide a carrier in its own plane, which the boxes only know up to rounding.
+    // The triangle does not hide view samples whose carrier is in its own plane; boxes know such planes only up to
+    // rounding.
     if (answer == BoxPlanes::Answer::hidden && (r.planes & plane_bit_) == 0) {
       ++boxes.hidden;
       boxes.hidden_pairs += std::uint64_t{32} * l.words * r.count();
@@ -150,8 +151,8 @@ class HierarchicalPenumbra::Caster {
     }
     if (r.is_leaf() && (l.words <= kLeafWords || l.is_leaf())) return try_leaf(l, receivers);
     if (!l.is_leaf() && (r.is_leaf() || !planes.one_side() || light_is_larger(l, r))) {
-      // A half-space of an edge that all four corners satisfy stays satisfied; the triangle's plane does not depend on
-      // the light.
+      // If the box is certainly in an edge's half-spaces of all four corners, it is in those of any part of the light,
+      // too; the triangle's plane does not depend on the light.
       std::uint32_t inherited = planes.one_side() ? open & 1U << 12 : 1U << 12;
       for (std::uint32_t e = 0; e < 3; ++e) {
         if (!planes.one_side() || (open >> 4 * e & 15) != 0) inherited |= 15U << 4 * e;
@@ -191,8 +192,8 @@ class HierarchicalPenumbra::Caster {
   HierarchicalPenumbra& method_;
   const LightTree& lights_;
   const ReceiverTree& receivers_;
-  std::vector<BoxPlanes> planes_;        // for the triangle and each node of the light
-  std::vector<std::uint32_t> made_for_;  // the triangle of each entry
+  std::vector<BoxPlanes> planes_;        // one for each node of the light, for the triangle in made_for_
+  std::vector<std::uint32_t> made_for_;  // for each entry of planes_: its triangle
   std::uint32_t number_ = 0, triangle_ = 0;
   std::array<glm::dvec3, 3> corners_{};
   glm::dvec3 middle_{0};

@@ -43,10 +43,11 @@ class LeafLists {
   /// Marks in `triangles` those that are dispensable for this light. `frame` is scaled by `scale`.
   void prepare_light(const visibility::TriangleTree& tree, const visibility::DeviceLight& frame, float scale,
                      device::TriangleUpload& triangles);
-  /// `constants`: specialization constants of the pass; the seventh is the number of leaves in a chunk.
+  /// `constants`: the pass's specialization constants, of which the seventh is the number of leaves in a chunk.
   void build_pass(const std::vector<std::uint32_t>& constants);
 
-  /// Makes the lists of the `blocks` blocks that `push` describes, and sets its chunk_capacity to the number of chunks.
+  /// Makes the lists of the `blocks` blocks that `push` describes, and sets push.chunk_capacity to the number of
+  /// chunks.
   [[nodiscard]] device::Attempt find(render::Commands& commands, gpu::ViewSamplePush& push, const LeafListInput& input,
                                      std::uint64_t blocks);
 
@@ -67,9 +68,9 @@ class LeafLists {
   const visibility::SceneFloats* scene_ = nullptr;
   std::uint32_t depth_ = 0;  // depth of the tree
   ClosedParts closed_;
-  std::vector<std::uint32_t> tags_;  // tags of triangles: closed parts
+  std::vector<std::uint32_t> tags_;  // tags of triangles (part_tags)
   std::optional<render::Buffer> parts_;
-  std::uint32_t parts_apart_ = 0;  // bits: closed parts separate from the light
+  std::uint32_t parts_apart_ = 0;  // bit k: closed part k is separate from the light
 
   device::GrowingList chunks_;
   device::PartWalk walk_;

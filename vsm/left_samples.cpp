@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Left-sample maps (Eisemann and Décoret 2007, section 4.3) with bounds: for each texel the light samples left of all,
-// of any and of the middle one of its lines.
+// Left-sample maps (Eisemann and Décoret 2007, section 4.3) with bounds: each texel has the light samples left of all
+// of its lines, of any of them, and of its middle line.
 
 #include "vsm/left_samples.hpp"
 
@@ -18,7 +18,7 @@
 namespace penumbra::vsm {
 namespace {
 
-/// Largest error of a line, in radii of the light, covered by a texel: a division, a root, an arc tangent and sines are
+/// Largest error of a line that a texel covers, in radii of the light: a division, a root, an arc tangent and sines are
 /// fewer than 2⁸ roundings of numbers up to 8; light samples of a tilted light are floats near its plane.
 constexpr double kMargin = 0x1p-18;
 
@@ -55,8 +55,8 @@ LeftSamples::LeftSamples(const visibility::Light& light, const pairs::LightBox& 
         if (at < from || at > to) continue;
         (turn % 2 == 0 ? most : least) = (turn % 2 == 0 ? 1 : -1) * glm::length(x);
       }
-      // A sample is left of the lines of all distances below some value: it is stored in the last of these, and
-      // propagated down from there.
+      // A sample is left of the lines of all distances below some value. It is stored at the last of these, and then
+      // propagated to the smaller distances.
       const auto put = [&](std::vector<std::uint32_t>& map, const auto& is_left) {
         std::uint32_t end = 0;
         for (std::uint32_t beyond = distances; end < beyond;) {
@@ -91,7 +91,7 @@ LeftSamples::Texel LeftSamples::texel(std::size_t number) const {
 LeftSamples::Texel LeftSamples::at(const Line& line) const {
   const std::size_t texels = std::size_t{angles_} * distances_;
   const double size = std::hypot(line.a, line.b), value = line.a * center_.x + line.b * center_.y + line.c;
-  // Largest deviation over all light samples.
+  // Largest difference between the value at the centre and that at any light sample.
   const double span = size * radius_ * (1 + kMargin) + line.error +
                       kMargin * (std::abs(line.a * center_.x) + std::abs(line.b * center_.y));
   if (value > span) return texel(texels);

@@ -14,8 +14,8 @@
 
 namespace penumbra::vsm {
 
-/// Left-sample maps (Eisemann and Décoret 2007, section 4.3): lines of the light's plane by their angle and distance,
-/// and for each texel of these the light samples to the left of its line.
+/// Left-sample maps (Eisemann and Décoret 2007, section 4.3): the lines of the light's plane, arranged by angle and
+/// distance. Each texel stores the light samples to the left of its line.
 ///
 /// Departure: in addition to those of its middle line, a texel stores the light samples to the left of all of its
 /// lines, and of any of them. Light samples between these two sets are not determined by the map.

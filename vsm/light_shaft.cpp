@@ -10,9 +10,9 @@
 
 namespace penumbra::vsm {
 
-// Places have errors of fewer than 8 roundings of twice the reach; so have the interpolated places below (s is right to
-// 2⁻⁵², 1 − s too, and each product and sum rounds once more), for a sun times its steepest slope. A light sample is
-// `off` its plane, which moves a segment by no more. 2⁻⁴⁴ of the sum is ample.
+// The error of a place is fewer than 8 roundings of twice the reach. The same holds for the interpolated places below
+// (s is right to 2⁻⁵², and so is 1 − s; each product and sum rounds once more), times the steepest slope for a sun. A
+// light sample is off its plane by `off`, which moves a segment by no more than that. 2⁻⁴⁴ of the sum is ample.
 LightShaft::LightShaft(const pairs::LightBox& light, double reach)
     : light_(light),
       margin_(light.sun ? 0x1p-44 * reach * (1 + glm::length(glm::max(glm::abs(light.lower), glm::abs(light.upper)))) +

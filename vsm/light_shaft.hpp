@@ -15,10 +15,9 @@ struct PlaceBox {
   glm::dvec3 lower{0}, upper{0};
 };
 
-/// Bounds of the space between a light and view samples, in the light's axes. At the fraction s from the light (a point
-/// l of it) to p the segment is at l + s (p − l); as h is 0 at the light, h determines s, so a box between two heights
-/// is met only where [l + s (p − l)] over those s meets it. A sun's ray is at p + (h_p − h) σ, σ its slope. Bounds are
-/// rounded outward.
+/// Bounds of the space between a light and view samples, in the light's axes. At the fraction s from a light point l to
+/// p, the segment is at l + s (p − l). Since h is 0 at the light, h determines s: a box between two heights can be met
+/// only at the s between these heights. A sun's ray with slope σ is at p + (h_p − h) σ. Bounds are rounded outward.
 class LightShaft {
  public:
   LightShaft() = default;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a binary hierarchy over light samples by halving at whole words of masks.
+// Builds a binary hierarchy over light samples by dividing them in halves at whole words of masks.
 
 #include "vsm/light_tree.hpp"
 

@@ -16,7 +16,7 @@ namespace penumbra::vsm {
 /// A binary hierarchy over light samples; nodes hold whole words of masks. Nodes are stored in pre-order.
 struct LightTree {
   struct Node {
-    std::array<glm::dvec3, 4> corners{};  ///< around its light samples: points, for a sun directions
+    std::array<glm::dvec3, 4> corners{};  ///< corners of a box around its light samples: points; for a sun, directions
     glm::dvec2 lower{0}, upper{0};        ///< bounds in the light's axes
     glm::dvec3 middle{0};
     double radius = 0;                  ///< half of the box's diagonal
@@ -29,7 +29,7 @@ struct LightTree {
 };
 
 /// Returns an order of light samples in which 32 consecutive ones are close together: `order[i]` is the index of the
-/// i-th.
+/// i-th sample.
 std::vector<std::uint32_t> compact_order(const visibility::Light& light);
 /// Makes the tree of a light whose samples are in compact_order.
 LightTree make_light_tree(const visibility::Light& light);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of view-sample mapping, a row a method: its description, and which engines it runs on. The papers are in
-// methods.hpp and on the methods' pages.
+// The table of view-sample mapping, one row for each method: its description, and which engines it runs on. The papers
+// are in methods.hpp and on the methods' pages.
 
 #include "vsm/methods.hpp"
 

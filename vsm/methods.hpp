@@ -11,7 +11,7 @@
 /// Factory and description of each method; a description needs no device.
 namespace penumbra::vsm {
 
-/// Returns the table of this room's methods, the best first.
+/// Returns the table of this folder's methods, the best first.
 std::span<const engines::MethodRow> methods();
 
 /// Makes `view-sample`: triangle-bitmask view-sample mapping for arbitrary receivers (Eisemann-Décoret 2007, Sintorn et

@@ -28,7 +28,7 @@ PlanarReceiver::PlanarReceiver(const pairs::LightBox& light, const glm::dvec3& n
   beside[least] = 1;
   across_ = glm::normalize(glm::cross(normal_, beside));
   along_ = glm::cross(normal_, across_);
-  // Fewer than 8 roundings of the reach; light samples are `off` the corners' hull.
+  // Fewer than 8 roundings of the reach; and light samples may be outside of the corners' hull by `off`.
   error_ = 0x1p-46 * reach + (sun_ ? 0 : light.off);
   for (std::size_t i = 0; i < 4; ++i) {
     const glm::dvec3 l = light.at(light.corners()[i]);
@@ -55,7 +55,7 @@ glm::dvec3 PlanarReceiver::place(const glm::dvec3& x) const {
   return {glm::dot(across_, x), glm::dot(along_, x), glm::dot(normal_, x)};
 }
 
-/// Returns −h of the triangle's highest corner: a segment from a lower p rises to its occluder.
+/// Returns −h of the triangle's highest corner: segments from p rise, so the triangle hides only p that are lower.
 double PlanarReceiver::nearest(const std::array<glm::vec3, 3>& corners) const {
   double highest = -std::numeric_limits<double>::max();
   // Segments may also fall where a part of the light is below the plane.
@@ -70,8 +70,8 @@ pairs::Footprint PlanarReceiver::footprint(const std::array<glm::vec3, 3>& corne
   std::array<glm::dvec3, 3> at{};
   for (std::size_t i = 0; i < 3; ++i) at[i] = place(glm::dvec3(corners[i]));
   const double high = std::max({at[0].z, at[1].z, at[2].z}), bottom = lowest_ - 4 * error_;
-  // A triangle below all view samples, or above the light, hides nothing. (If all of the light is above the view
-  // samples.)
+  // If all of the light is above the view samples, a triangle below all view samples, or above the light, hides
+  // nothing.
   const double gap = sun_ ? 0x1p-10 : kGap * (light_low_ - lowest_);
   const bool light_above = sun_ ? light_low_ > gap : light_low_ > highest_ + 4 * error_ && gap > 64 * error_;
   if (light_above && high < bottom) return footprint;
@@ -97,8 +97,8 @@ pairs::Footprint PlanarReceiver::footprint(const std::array<glm::vec3, 3>& corne
         const glm::dvec2 q = (sun_ ? glm::dvec2(x) : glm::dvec2(l)) + k * direction;
         lower = glm::min(lower, q);
         upper = glm::max(upper, q);
-        // Errors of x and l, once more for each multiple of their heights in the extrapolation; for a sun also the
-        // error of its direction.
+        // Errors of x and l, multiplied as the extrapolation multiplies their differences; for a sun also the error of
+        // its direction.
         footprint.error =
             std::max(footprint.error, 8 * error_ * (1 + std::abs(k)) * (1 + glm::length(direction) / rise));
         if (sun_) footprint.error += 0x1p-40 * std::abs(k);

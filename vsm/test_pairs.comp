@@ -3,14 +3,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "vsm/view_sample.glsl"
 
-// Second pass of view-sample mapping: for every (view sample, triangle) pair the set of light samples that the triangle
-// hides, OR-ed (Eisemann-Décoret 2007; Sintorn et al. 2008). Departing from the papers, nothing is decided by rounding:
-// the plane of each edge has an error bound, light samples within it are recorded as an open question, and the host
-// answers these with exact predicates.
+// Second pass of view-sample mapping: finds, for every pair of a view sample and a triangle, the set of light samples
+// that the triangle hides, and ORs these sets (Eisemann-Décoret 2007; Sintorn et al. 2008). Departing from the papers,
+// nothing is decided by rounding: the plane of each edge has an error bound, light samples within it are recorded as
+// open questions, and the host answers these with exact predicates. Bounds: docs/view-sample.md.
 
 layout(binding = 5) uniform usamplerBuffer corner_a;      // for each leaf slot: (a, triangle)
 layout(binding = 6) uniform usamplerBuffer corner_b;      // for each leaf slot: (b, plane and closed part)
-layout(binding = 7) uniform usamplerBuffer corner_c;      // for each leaf slot: (c, light whose body it is)
+layout(binding = 7) uniform usamplerBuffer corner_c;      // for each leaf slot: (c, light whose body it belongs to)
 
 shared uint again[kChunk * kTeam + 1];
 
@@ -31,8 +31,8 @@ vec3 row_s, row_t, row_w;                                 // d ↦ (S, T, W): th
 float r;                                                  // R = max(|u|, |v|) · max(|c − p|, |u|, |v|)
 float light_pad;                                          // enlargement of a box by the deviation of the light samples
 float edge_error, det_error;                              // errors of edges and of det, to be multiplied by lengths
-const float kLeastError = 1e-33;                          // above the effect of underflow on an edge's values, and its
-                                                          // reciprocal is finite
+const float kLeastError = 1e-33;                          // above the effect of underflow on an edge's values, and
+                                                          // large enough for a finite reciprocal
 const float kUnderflow = 1e-36;                           // above the effect of underflow on a sum of products
 
 vec3 to_light(vec3 d) { return vec3(dot(row_s, d), dot(row_t, d), dot(row_w, d)); }
@@ -43,8 +43,7 @@ struct Seen {
   vec3 A, D1, D2;
   float from_a, far;                                      // from_a: |a − p|; far: bounds the distance of each corner
   float error_a;                                          // error of each coordinate of A, A + D1, A + D2 (bound W)
-  float lowest, highest;                                  // W of the corners: the nearest to p's plane, and the
-                                                          // farthest
+  float lowest, highest;                                  // smallest and largest W of the corners
   vec4 box;                                               // its place on the light (bound box)
 };
 
@@ -78,9 +77,9 @@ vec3 error_of_edges(Seen seen, vec2 sizes) { return edge_error * seen.far * vec3
 bool has_side(float det, Seen seen, vec2 sizes) { return abs(det) > max(det_error * seen.from_a * sizes.x * sizes.y, kUnderflow); }
 
 // Tests the pairs that float arithmetic decides, which are nearly all: the triangle lies between p and the light, p is
-// off its plane, and no light sample is within the error of an edge. Returns false, having marked only certain results,
-// if `test_carefully` must repeat the test. Short, because some devices execute all of a loop's body regardless of its
-// branches.
+// off its plane, and no light sample is within the error of an edge. If this does not hold, returns false, having
+// marked only certain results: `test_carefully` must repeat the test. The function is short, because some devices
+// execute all of a loop's body regardless of its branches.
 bool test_quickly(vec3 a, vec3 e1, vec3 e2, vec2 sizes, bool beyond) {
   const Seen seen = see(a, e1, e2, sizes);
   const vec3 ab = cross(seen.A, seen.D1), bc = cross(seen.A + seen.D1, seen.D2 - seen.D1), ca = cross(seen.D2, seen.A);
@@ -161,7 +160,7 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
     const vec3 n = cross(e1, e2), from = push.center - a;
     fourth = orientation * vec3(dot(n, push.u), dot(n, push.v), dot(n, from));
     fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * sizes.x * sizes.y + kLeastError;
-    // p is within rounding of the triangle's plane: no result is certain
+    // If p is within rounding of the triangle's plane, no result is certain.
     if (!one_way) {
       fourth = vec3(0.0);
       fourth_error = 1.0;
@@ -188,8 +187,8 @@ void main() {
   for (uint word = 0; word < words && full; ++word) {
     full = masks[pixel * words + word] == 0;
   }
-  // Factor 0.5: a compiler may round differently here than in find_leaves, which asked the host; the host's answer
-  // replaces results found here.
+  // Factor 0.5: a compiler may round level_error differently here than in find_leaves, which asked the host. The host's
+  // answer replaces results found here.
   const bool on = inside && carrier != kNone && level * side > 0.5 * level_error && !full;
   for (uint word = 0; word < kSharedWords; ++word) blocked[slot_of(word)] = 0;
 
@@ -212,7 +211,8 @@ void main() {
   const uint end = kChunk * kTurns;
   uint at = subgroupAny(on) ? 0 : end;
   uint again_count = 0;
-  for (; at < end; at += kTeams) {                        // one round of the teams after the other, leaf by leaf
+  for (; at < end; at += kTeams) {                        // the teams take one round of a leaf's slots after the other,
+                                                          // leaf by leaf
     const uint number = at / kTurns + team, leaf = number < kChunk ? chunks[first + kChunkHead + number] : kNone;
     if (subgroupAll(leaf == kNone)) {
       at = end;
@@ -228,8 +228,8 @@ void main() {
                      max(levels.x, max(levels.y, levels.z)) >= shaft.lowest && all(lessThanEqual(least, shaft.beyond));
     const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
     const vec2 sizes = vec2(length(e1), length(e2));
-    // All view samples are behind a triangle of a part, and outside of the part: another triangle of the part hides
-    // everything that this one hides.
+    // If all view samples are behind a triangle of a closed part, and outside of the part, another triangle of the part
+    // hides everything that this one hides.
     const vec3 n = cross(e1, e2);
     const bool behind = dot(n, t.a - middle) - dot(abs(n), half_size) > 64.0 * kRound * push.reach * size1(e1) * size1(e2);
     const bool dispensable = behind && (outside_of >> t.part & 1) != 0;
@@ -254,7 +254,7 @@ void main() {
     const vec3 e1 = t.b - t.a, e2 = t.c - t.a;
     if (on && t.plane != carrier_plane) test_carefully(t.a, e1, e2, vec2(length(e1), length(e2)), t.triangle, again[i] >> 31 != 0);
   }
-  // Some drivers for processors end loops after 65535 iterations, which must be reported.
+  // Some drivers that run on processors end loops after 65535 iterations, which must be reported.
   if (at < end || i < again_count) atomicOr(asked.cut_off, 1u);
   if (on && !take_from_mask()) atomicOr(asked.cut_off, 1u);
 }

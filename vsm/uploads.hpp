@@ -27,14 +27,15 @@ inline constexpr std::uint32_t kPartShift = 27;
 /// empty if there are no parts.
 std::vector<std::uint32_t> part_tags(const ClosedParts& closed);
 
-/// Writes a number into the second texel of each child of the tree: if all triangles below the child are dispensable,
-/// the one closed part to which they belong (view samples outside of this part need not test them, find_dispensable);
-/// else 0. `dispensable`: what find_dispensable returned. `nodes`: the tree's texels, two a child.
+/// Writes a number into the second texel of each child of the tree. If all triangles below the child are dispensable,
+/// it is the one closed part to which they belong: view samples outside of this part need not test them
+/// (find_dispensable). Else it is 0. `dispensable`: the result of find_dispensable. `nodes`: the tree's texels, two for
+/// each child.
 void mark_dispensable(const visibility::TriangleTree& tree, std::span<const std::uint8_t> dispensable,
                       std::span<Texel> nodes);
 
-/// Returns the boxes of each part, seven a part: its own, then for each of its six faces the box of the part's vertices
-/// on that face (ClosedPart::touching). A box is two texels, its lower and its upper corner, multiplied by `scale`.
+/// Returns seven boxes for each part: its own, then for each of its six faces the box of the part's vertices on that
+/// face (ClosedPart::touching). A box is two texels, its lower and its upper corner, multiplied by `scale`.
 std::vector<Texel> part_texels(const ClosedParts& closed, float scale);
 
 /// The shaders' table of light samples: uint first_point[257], then (s, t) of each light sample, sorted by t, so that a

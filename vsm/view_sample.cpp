@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `view-sample`: selects one of its two engines for each light; or the published variant.
+// `view-sample`: selects one of its two engines for each light, or the published variant.
 
 #include "vsm/methods.hpp"
 

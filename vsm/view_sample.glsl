@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by the two passes of view-sample mapping: one workgroup is one subgroup and handles one block of neighbouring
-// pixels; a lane in turn stands for a child box, a triangle, a view sample. docs/view-sample.md derives every bound, by
-// the names used here.
+// Shared by the two passes of view-sample mapping. One workgroup is one subgroup and handles one block of neighbouring
+// pixels; a lane handles first a child's box, then a triangle, then a view sample. docs/view-sample.md derives every
+// bound, under the names used here.
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
@@ -31,8 +31,8 @@ layout(scalar, binding = 3) buffer Questions {
   QuestionHead asked;
   OpenQuestion questions[];
 };
-// A chunk is 2 + kChunk words: the block (top bit: on the light's back side), the closed parts that all its view
-// samples are outside of (bits), and leaves of the tree that its shaft meets.
+// A chunk is 2 + kChunk words: the block (top bit: on the light's back side), a bit for each closed part that all its
+// view samples are outside of, and leaves of the tree that its shaft meets.
 layout(scalar, binding = 4) buffer Chunks {
   uint chunk_count, unfinished;
   uint chunks[];
@@ -40,10 +40,11 @@ layout(scalar, binding = 4) buffer Chunks {
 layout(scalar, push_constant) uniform Push { ViewSamplePush push; };
 
 const uint kTeam = 8;                                     // children of a node, triangles of a leaf
-// A team of lanes handles a node's children: several teams in a subgroup, or one that takes several rounds.
+// A team of lanes handles a node's children. A subgroup has several teams, or one that takes several rounds (turns).
 const uint kTeams = kLanes < kTeam ? 1 : kLanes / kTeam, kTurns = kLanes < kTeam ? kTeam / kLanes : 1;
 const uint kNone = 0xffffffffu, kLeafBit = 0x80000000u, kBackBit = 0x80000000u;
-const uint kPartShift = 27, kPlaneMask = (1u << kPartShift) - 1;  // a plane's index, and above it a closed part's
+const uint kPartShift = 27, kPlaneMask = (1u << kPartShift) - 1;  // a word holds a plane's index and, above it, a
+                                                                  // closed part's
 const uint kChunkHead = 2;                                // words before the leaves
 const float kRound = 1.0 / 16777216.0;                    // 2⁻²⁴: half a unit in the last place of 1
 
@@ -170,8 +171,8 @@ void mark(HalfPlanes f, vec4 box, uint triangle) {
 }
 
 const vec4 kWholeLight = vec4(-1.0, -1.0, 1.0, 1.0);
-const vec3 kAlways = vec3(0.0, 0.0, 1.0);                 // the half-plane without an edge,
-const float kAlwaysError = 0.5;                           // and an error that leaves it certain
+const vec3 kAlways = vec3(0.0, 0.0, 1.0);                 // a half-plane that contains the whole light,
+const float kAlwaysError = 0.5;                           // and an error with which this is certain
 
 // Clears this lane's blocked samples in its mask in memory. Rows may end within a word. Returns false if the driver
 // ended the loop early.

@@ -18,7 +18,7 @@ struct ViewSamplePush {
   float deviation;  // largest distance of a stored light sample from its place at (s, t)
   float reach;      // at least the largest magnitude of a coordinate in the scene
   uint two_sided;
-  int light;                   // index of the light: triangles that are its body are transparent to it
+  int light;                   // index of the light; triangles of its own body are transparent to it
   uint width;                  // pixels in a row
   uint first_row;              // first row of the tile in the stored view samples
   uint band_first, band_rows;  // the rows of the tile that this dispatch handles

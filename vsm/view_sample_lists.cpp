@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // E. Sintorn, E. Eisemann and U. Assarsson, Sample based visibility for soft shadows using alias-free shadow maps,
-// Computer Graphics Forum 27 (4), 2008: view samples in lists of light pixels on the far plane of the light's frustum;
-// for each triangle the hull of its footprints from the light's corners, rasterised conservatively; in each light pixel
-// the triangle is tested against each view sample of the list.
+// Computer Graphics Forum 27 (4), 2008: view samples are in lists of light pixels on the far plane of the light's
+// frustum. For each triangle, the hull of its footprints from the light's corners is rasterised conservatively; in each
+// light pixel, the triangle is tested against each view sample of the list.
 //
 // Departures. On the processor. View samples outside of the frustum are tested against all triangles. A view sample
-// that sees no light any more is removed from its list. Half-spaces through view sample and edge as in their section
-// 4.3, evaluated for each light sample instead of read from a table: each bit is exact, independent of a table's
-// resolution.
+// that no longer sees any light is removed from its list. Half-spaces through view sample and edge are those of the
+// paper's section 4.3, but are evaluated for each light sample instead of read from a table: each bit is exact,
+// independent of a table's resolution.
 
 #include "vsm/view_sample_lists.hpp"
 

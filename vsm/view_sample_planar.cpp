@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// E. Eisemann and X. Décoret, Visibility sampling on GPU and applications, Computer Graphics Forum 26 (3), 2007: a
-// receiver patch is the picture, its texels are view samples. For each triangle, a box on the receiver that contains
-// every point from which it may hide any of the light; in each texel there the triangle is projected back onto the
-// light, and for each of its three edges a left-sample map gives the light samples to the left of its line.
+// E. Eisemann and X. Décoret, Visibility sampling on GPU and applications, Computer Graphics Forum 26 (3), 2007: the
+// picture is a receiver patch, its texels are view samples. For each triangle, a box on the receiver contains every
+// point from which the triangle may hide any of the light. In each texel of the box, the triangle is projected back
+// onto the light, and for each of its three edges a left-sample map gives the light samples to the left of the edge's
+// line.
 //
 // Departures. Every plane of the scene with enough view samples is a receiver, and the remaining view samples form a
 // height field over a plane parallel to the light: so any scene is possible. Texels have lists of view samples at the
-// camera's places. Back-projections are lines of planes through p and an edge, without a division. lookup=exact decides
-// light samples that a map leaves open.
+// camera's places. An edge's line on the light is that of the plane through p and the edge, found without a division.
+// lookup=exact decides light samples that a map leaves open.
 
 #include "vsm/methods.hpp"
 
@@ -183,7 +184,7 @@ void ViewSamplePlanar::look_up(std::uint32_t triangle, std::uint32_t pixel, Look
   const glm::dvec3 e1 = glm::dvec3(corners[1]) - first, e2 = glm::dvec3(corners[2]) - first;
   const glm::dvec3 normal = glm::cross(e1, e2);
   const double normal_error = kDeterminant * glm::length(e1) * glm::length(e2), height = -glm::dot(normal, d[0]);
-  // the orientation of the triangle's edges is not certain
+  // If the orientation of the triangle's edges is not certain, each light sample is decided exactly.
   if (!(std::abs(height) > normal_error * glm::length(d[0]))) {
     blocked().hide(p, corners, visible(pixel), counts.pairs);
     return;

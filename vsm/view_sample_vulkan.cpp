@@ -33,7 +33,8 @@ class ViewSampleMapping final : public device::MaskMethod {
       : MaskMethod(device, view_sample_description(), sizeof(gpu::OpenQuestion)),
         resolve_(device, {.name = "resolve", .spirv = shaders::kResolveComp, .push_bytes = sizeof(gpu::ResolvePush)}),
         lists_(device, view_sample_description().name) {
-    render::require_features(device.info(), shaders::kTestPairsComp, "test pairs");  // made when the light is known
+    render::require_features(device.info(), shaders::kTestPairsComp, "test pairs");  // checked now; the pass is made
+                                                                                     // when the light is known
   }
 
   void prepare_light(const visibility::Light& light) override {
@@ -64,8 +65,8 @@ class ViewSampleMapping final : public device::MaskMethod {
     SampleTable table = make_sample_table(device_light(), rows);
     table_.emplace(render::make_buffer<std::byte>(device(), "light samples", table.bytes));
 
-    // Some drivers for processors end loops after 65535 iterations of a workgroup; a triangle takes about one iteration
-    // for each row or point.
+    // Some drivers that run on processors end loops after 65535 iterations of a workgroup; a triangle takes about one
+    // iteration for each row or point.
     const std::uint32_t turns = TriangleTree::kWidth * ((rows ? light.rows : light.sample_count()) + 8);
     shape_ = {.scattered = !rows,
               .words_per_row = std::max(words_per_row, 1U),
@@ -89,12 +90,12 @@ class ViewSampleMapping final : public device::MaskMethod {
   [[nodiscard]] std::uint32_t block_width() const { return lanes() >= 32 ? 8 : lanes() >= 8 ? 4 : 2; }
   [[nodiscard]] std::uint32_t block_height() const { return lanes() / block_width(); }
 
-  /// Returns the number of lanes of whole teams: at least one, which a smaller subgroup handles in parts.
+  /// Returns the number of lanes, but at least that of a whole team, which a smaller subgroup handles in parts.
   [[nodiscard]] std::uint32_t lanes_of_teams() const { return std::max(lanes(), TriangleTree::kWidth); }
 
   void build_passes() {
-    // In depth-first order, a node for each team at a time, each node adds at most seven more than it removes; rounded
-    // up, so that few scenes need different passes.
+    // Nodes are taken in depth-first order, one for each team at a time, and each adds at most seven more than it
+    // removes. Rounded up, so that few scenes need different passes.
     const std::uint32_t levels = (tree().depth + 3) / 4 * 4 + 2, stack = lanes_of_teams() * levels;
     check_shared_memory(stack);
     const std::vector<std::uint32_t> constants{

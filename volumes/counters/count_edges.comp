@@ -18,15 +18,16 @@ layout(constant_id = 4) const uint kHalves = 0;           // 1: a silhouette cou
                                                           // (variant=laine)
 layout(constant_id = 5) const uint kKeepsDepths = 0;      // 1: writes the counters, too
 
-// An edge record (EdgeTexels), a texel buffer for each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor
-// 2).
+// Edge records (EdgeTexels), one texel buffer for each member: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
+// (anchor 2).
 layout(binding = 3) uniform usamplerBuffer record_a;
 layout(binding = 4) uniform usamplerBuffer record_b;
 layout(binding = 5) uniform usamplerBuffer record_n1;
 layout(binding = 6) uniform usamplerBuffer record_anchor1;
 layout(binding = 7) uniform usamplerBuffer record_n2;
 layout(binding = 8) uniform usamplerBuffer record_anchor2;
-// A triangle: (a, triangle), (b, plane), (c, light whose body it is).
+// Triangles, one texel buffer for each corner: (a, triangle), (b, plane), (c, light whose body the triangle belongs
+// to).
 layout(binding = 9) uniform usamplerBuffer corner_a;
 layout(binding = 10) uniform usamplerBuffer corner_b;
 layout(binding = 11) uniform usamplerBuffer corner_c;
@@ -57,11 +58,11 @@ float lift_per_length;                                    // see lift_of
 bool open_pixel, cut_off;                                 // open_pixel: the host decides everything; cut_off: a loop
                                                           // ended early
 bool side_in_doubt, on_triangle;                          // side_in_doubt: p is within rounding of a triangle's plane;
-                                                          // on_triangle: p is on one that occludes
+                                                          // on_triangle: p is on an occluding triangle
 
-// The passes below use cells of the frame's half-sizes: (X, Y) from the middle is (s, t).
+// Below, a cell has the frame's half-sizes: (X, Y), measured from the light's middle, equals (s, t).
 
-// Returns the place of p + d on the light, relative to c0, and its height over p.
+// Projects p + d onto the light: returns its (X, Y), relative to c0, and the height of p + d over p.
 precise vec3 project(vec3 d) {
   precise const float w = -dot(axis, d);
   precise const float q = at.height / w;
@@ -77,7 +78,7 @@ float error_of(float far, float w, float from_foot, float away) {
          (per_length + from_foot / at.height) * push.deviation;
 }
 
-// Returns sgn(n · (p − anchor)); sets `open` if it is within its error.
+// Returns sgn(n · (p − anchor)); sets `open` if the product is within its rounding error.
 int side_seen(vec3 n, vec3 anchor, inout bool open) {
   precise const vec3 d = at.p - anchor;
   precise const float f = dot(n, d);
@@ -85,14 +86,15 @@ int side_seen(vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// Returns a triangle's contribution to k_e. The carrier's plane contributes nothing; but where silhouettes of closed
-// meshes must stay closed, it contributes as seen from slightly above p.
+// Returns a triangle's contribution to k_e. The carrier's plane contributes nothing, except where silhouettes of closed
+// meshes must stay closed (kHalves): there it contributes as seen from slightly above p.
 int side_of(vec3 n, vec3 anchor, uint plane, inout bool open) {
   const bool own = plane == at.plane && n != vec3(0.0);
   if (own && kHalves == 0) return 0;
   const float above = dot(n, at.normal);
   const int side = own ? (above > 0.0 ? 1 : above < 0.0 ? -1 : 0) : side_seen(n, anchor, open);
-  if (kHalves != 0 && side == 0 && n != vec3(0.0)) open_pixel = true;  // no silhouette closes around it
+  if (kHalves != 0 && side == 0 && n != vec3(0.0)) open_pixel = true;  // seen edge-on: the silhouette around the
+                                                                       // triangle may not be closed
   return side;
 }
 
@@ -103,8 +105,8 @@ struct Edge {
   bool matters;
 };
 
-// Computes this lane's edge. Its part outside of a window of twice the light is clipped, so that ends near p's height,
-// or behind p, do not affect precision in the window; an unclipped end is the same for all edges that meet in it.
+// Computes this lane's edge. The part outside of a window of twice the light is clipped, so that ends near p's height,
+// or behind p, do not affect precision in the window. An unclipped end is computed alike for all edges that meet in it.
 Edge see(uint slot, bool used) {
   const int texel = int(slot);
   const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);
@@ -136,7 +138,7 @@ Edge see(uint slot, bool used) {
   const float away = length(from_center);
   const vec2 foot = at.foot - (first_cell - half_cells);
   const float foot_a = length(seen_a.xy - foot), foot_b = length(seen_b.xy - foot);
-  // p within rounding of a triangle's plane: seen from p the triangle is a sliver. (bound sliver)
+  // If p is within rounding of a triangle's plane, that triangle is a sliver as seen from p. (bound sliver)
   const float sliver = open ? 16.0 * kRound * max(length(anchor1 - at.p), length(anchor2 - at.p)) : 0.0;
   const float far_start = (cut ? far : far_a) + (from > 0.0 ? mix(cut_off_by.x, cut_off_by.y, from) : cut_off_by.x);
   const float far_end = (cut ? far : far_b) + (to < 1.0 ? mix(cut_off_by.x, cut_off_by.y, to) : cut_off_by.y);
@@ -160,9 +162,9 @@ Edge see(uint slot, bool used) {
   return edge;
 }
 
-// Returns the unit direction of an edge with these differences of its ends; any direction where the ends are so close
-// that the edge is a point relative to its error of 2⁻¹⁷ of a cell or more (bound near). (1e-12)² is a normal float, so
-// the length is right.
+// Returns the unit direction of an edge, given the difference d of its ends and its length. If the ends are so close
+// that the edge is a point relative to its error (2⁻¹⁷ of a cell or more, bound near), returns any unit vector.
+// (1e-12)² is a normal float, so longer lengths are computed correctly.
 vec2 direction_of(vec2 d, float size) { return size > 1e-12 ? d / size : vec2(1.0, 0.0); }
 
 // Returns whether x is within `error` of the edge from a to b. `direction` has unit length.
@@ -234,7 +236,7 @@ void count_list(uint head) {
     for (; i < count && queued + kLanes <= kQueue; i += kLanes) {
       const bool used = i + gl_SubgroupInvocationID < count;
       const Edge edge = see(lists[piece + 2 + (used ? i + gl_SubgroupInvocationID : 0)], used);
-      // If c0 is that close to an edge, D at c0 does not correspond to the edges as projected.
+      // If c0 is within an edge's error of it, D at c0 may not agree with the edges as projected.
       const vec2 d = edge.b - edge.a;
       const float size = sqrt(dot(d, d));
       open_pixel = open_pixel || (edge.matters && is_near(vec2(0.0), edge.a, direction_of(d, size), size, edge.error));
@@ -325,15 +327,15 @@ void main() {
   on_triangle = false;
 
   const bool receives = at.carrier != kNone;
-  // Condition (2): p strictly on an emitting side of the light's plane. (bound level)
+  // Condition (2) of docs/definitions.md: p is strictly on an emitting side of the light's plane. (bound level)
   const float error_level = level_error(at.p);
   const bool this_side = receives && at.height > error_level, other_side = receives && at.height < -error_level;
   if (!this_side) {
     if (push.side > 0.0 && !(other_side && push.keeps_rest != 0)) settle_whole(pixel, !receives, receives && !other_side);
     return;
   }
-  // Condition (1): the light sample strictly above the carrier's plane, which is one half-plane of the light. (bound
-  // horizon)
+  // Condition (1) of docs/definitions.md: the light sample is strictly above the carrier's plane. The part of the light
+  // above that plane is bounded by one line. (bound horizon)
   const vec3 towards = -from_center;
   const vec3 above = vec3(dot(at.normal, push.u), dot(at.normal, push.v), dot(at.normal, towards));
   const float error_above = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(at.p)) + push.deviation;

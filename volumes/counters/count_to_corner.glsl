@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts D at the corner of the light's frame. Included by count_edges.comp, after its data about the view sample.
+// Bounds: docs/edge-scatter.md.
 
 // Returns the number of triangles that the segment from p to c0 meets, one lane for each triangle (Woop et al. 2013: in
 // coordinates with the ray as third axis, three two-dimensional products decide). (bound corner)
@@ -26,8 +27,8 @@ uint count_to_corner(uint head) {
       const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
       const bool one_sign = all(greaterThan(f, vec3(error))) || all(lessThan(f, vec3(-error)));
       const bool passes = any(greaterThan(f, vec3(error))) && any(lessThan(f, vec3(-error)));
-      // Height over p of the intersection of line and triangle's plane: the mean of the corners' heights, with weights
-      // f.
+      // Height over p of the point where the ray meets the triangle's plane: the mean of the corners' heights, with
+      // weights f.
       const float total = f.x + f.y + f.z, meeting = (f.y * w.x + f.z * w.y + f.x * w.z) / total;
       const float slack = 16.0 * kRound * (far + push.reach), error_w = slack + 6.0 * error * far / max(abs(total), 1e-30);
       const float lowest = min(w.x, min(w.y, w.z)), highest = max(w.x, max(w.y, w.z));

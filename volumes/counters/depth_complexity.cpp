@@ -112,7 +112,7 @@ visibility::ErrorRepairs depth_complexity_repairs(const visibility::MethodDescri
   const visibility::MethodOptions options = visibility::complete_options(method, given);
   const std::string& variant = options.at(kVariant.name());
   if (variant == "soup") return repairs;
-  // laine may be wrong on meshes that are not closed: the visible area would repair that, too.
+  // Not the visible area, which would also repair laine's errors on meshes that are not closed.
   repair_of(repairs, ErrorCause::samples) = visibility::more_light_samples(method, given);
   if (variant == "laine") return repairs;
   if (options.at(kAs.name()) == "published") {
@@ -169,7 +169,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   void evaluate(const visibility::Tile& tile) override {
     asked_.clear();
     const std::uint32_t pixels = tile.row_count * samples().width;
-    // every view sample asks for its reference ray
+    // every view sample has one question: its reference ray
     if (variant_ == Variant::laine) questions().want(pixels + pixels / 8);
     EdgeMethod::evaluate(tile);
   }
@@ -317,7 +317,7 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
   std::optional<render::Buffer> places_, touched_;
   std::unique_ptr<render::Buffer> depths_;
   std::vector<gpu::DepthQuestion> asked_;                           // questions of the tile
-  std::vector<device::OpenBits> reference_rays_;                    // of the band, for variant=laine
+  std::vector<device::OpenBits> reference_rays_;                    // reference rays of the band, for variant=laine
   std::uint64_t references_ = 0, open_words_ = 0, open_pairs_ = 0;  // counters
 };
 

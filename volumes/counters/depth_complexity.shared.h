@@ -7,9 +7,9 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-// Light samples of a pixel (of the tile): those of `bits` of a word of its mask. With kReference: `word` is the index
-// of the one light sample whose ray the whole mask depends on; `bits` is 0. With kAllWords: all light samples of the
-// pixel, regardless of other questions about it.
+// A question about light samples of a pixel (of the tile): those of `bits` in word `word` of its mask. With kReference:
+// `word` is the index of the one light sample whose ray the whole mask depends on; `bits` is 0. With kAllWords: all
+// light samples of the pixel, regardless of other questions about it.
 struct DepthQuestion {
   uint pixel;
   uint word;

@@ -11,11 +11,11 @@
 
 namespace penumbra::volumes {
 
-/// A variant of `depth-complexity` that stores its counters in addition to its masks, for inspection. Virtual base: a
-/// variant may also derive from a method otherwise.
+/// A variant of `depth-complexity` that stores its counters in addition to its masks, for inspection. The base is
+/// virtual because a variant may inherit Method through another class, too.
 class DepthCounters : public virtual visibility::Method {
  public:
-  /// Value for light samples left to exact predicates, or of a view sample that sees nothing of the light.
+  /// Counter of light samples left to exact predicates, and of all light samples if p sees nothing of the light.
   static constexpr std::int32_t kNoCounter = std::numeric_limits<std::int32_t>::min();
 
   /// Reads one counter for each light sample and each pixel of the tile evaluated last. Light samples below the horizon

@@ -43,7 +43,7 @@ using visibility::ViewSamples;
 /// Returns the hull of all points that crossings depend on: the light's hull, its centre and its samples. Points that
 /// rounding to float32 has moved out of the hull become corners, too.
 LightHull hull_of(const Light& light) {
-  constexpr std::uint32_t kSides = 8;  // of a disk: loose, but fast
+  constexpr std::uint32_t kSides = 8;  // sides of the polygon around a disk: loose, but fast
   LightHull hull = light_hull(light, kSides);
   const auto on_plane = [&](const glm::dvec3& x) {
     return mesh::side_of_plane(hull.corners[0], hull.corners[1], hull.corners[2], x) == mesh::Side::on;
@@ -179,13 +179,13 @@ class PackedCounters final : public DepthCounters {
   std::unique_ptr<WedgeRaster> raster_;
   std::vector<std::uint32_t> constants_;  // specialization constants of raster_
   LightWedges wedges_;
-  std::optional<std::vector<gpu::WedgeFace>> faces_;  // for this view
+  std::optional<std::vector<gpu::WedgeFace>> faces_;  // faces of this view
   const SceneFloats* scene_ = nullptr;
   const Light* light_ = nullptr;
   const ViewSamples* samples_ = nullptr;
 
   Tile tile_;
-  // Words of a mask for each pixel, one for each pass over the light samples.
+  // One word of a mask for each pixel and each pass over the light samples:
   std::vector<std::uint32_t> above_;  // the light samples above the carrier's plane
   std::vector<std::uint32_t> open_;   // light samples left to exact predicates
   std::vector<std::uint32_t> masks_;
@@ -251,7 +251,8 @@ std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
     const auto carrier = static_cast<std::uint32_t>(samples_->triangle[first + i]);
     const CarrierHorizon plane(*scene_, tree_, carrier, samples_->facing[first + i],
                                on_plane_[scene_->plane[carrier]] == 1);
-    // p is on a triangle, which is crossed where p→l leaves it, but not met.
+    // If p is on a triangle, the sum over edges counts that triangle on the side to which p→l leaves it, but p→l does
+    // not meet it.
     const bool doubtful = count_.doubts()[i] != 0 || !appears_in_place(samples_->camera, p, first + i);
     const bool counted = kinds[i] != Kind::dark && !doubtful;
     if (counted) receivers[i] = {p, 1};
@@ -264,7 +265,7 @@ std::vector<gpu::WedgeReceiver> PackedCounters::classify() {
   return receivers;
 }
 
-/// Returns the change by the edges of the counter of one of the pass's light samples: its digit.
+/// Returns by how much edges changed the counter of one light sample of the pass: the counter's digit.
 std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) const {
   const std::uint32_t bits = options_.counter_bits;
   const std::uint64_t half = std::uint64_t{1} << (bits - 1);
@@ -274,7 +275,7 @@ std::int64_t PackedCounters::change_of(std::size_t pixel, std::uint32_t sample) 
   return static_cast<std::int64_t>(digit) - static_cast<std::int64_t>(half);
 }
 
-/// Returns whether a counter of the pass may have overflowed: none has changed by more than the last word.
+/// Returns whether a counter of the pass may have overflowed: no counter has changed by more than the last word.
 bool PackedCounters::may_have_overflowed(std::size_t pixel) const {
   const std::int64_t most = (std::int64_t{1} << (options_.counter_bits - 1)) - 1;
   return raster_->sums()[pixel * (words() + 1) + words()] > most;

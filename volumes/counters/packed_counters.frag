@@ -18,8 +18,8 @@
 layout(constant_id = 0) const uint kSamples = 16;
 layout(constant_id = 1) const uint kBits = 16;             // bits of a counter
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
-                                                                           // both stages
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; both stages
+                                                                           // have the same descriptor set
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };              // a bit for each light sample
@@ -56,9 +56,10 @@ void cut_range(double d, double e, inout double first, inout double last) {
   if (d >= 0.0LF && e < 0.0LF) last = min(last, at);
 }
 
-/// Returns false only if the edge does not appear among c and the light samples: most fragments need no sign. A point
-/// at distance g from the light's plane appears from p, at distance G, displaced by less than 2 g / G of its distance
-/// from p's foot: at most the box's margin, else nothing is skipped.
+/// Returns false only if the edge, seen from p, appears outside of the box around c and the light samples: most
+/// fragments then need no sign. With p at distance G from the light's plane, a point at distance g from that plane
+/// appears displaced by less than 2 g / G of its distance from p's foot. If that may exceed the box's margin, nothing
+/// is skipped.
 bool may_appear(dvec3 a, dvec3 b, dvec3 p) {
   const Foot foot = foot_of(p);
   const dvec3 from = project(a - p, foot), to = project(b - p, foot);
@@ -88,8 +89,8 @@ void main() {
   const uint at_center = signs(center.value, center.bound);
   const int change = (at_center & kUp) != 0 ? -face_weight : face_weight;
 
-  // Light samples that are not certainly on the same side; hardly any in most of a footprint. Some devices execute code
-  // that a branch skips, but no more loop iterations than needed: so loops do the skipping.
+  // Light samples that are not certainly on the same side as c; there are hardly any in most of a footprint. Some
+  // devices execute code that a branch skips, but run no more loop iterations than needed: so loops do the skipping.
   uint left = 0;
   for (uint j = 0; j < looked_at; ++j) {
     const Value here = det(sample_at(j) - p, to_a, to_b);

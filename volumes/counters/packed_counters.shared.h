@@ -16,8 +16,8 @@ const uint kMostPacked = 32;
 
 /// Doubles before the light samples (packed_counters.frag).
 const uint kPackedHead = 6;
-/// Relative to the terms of the sums X, Y and W, three roundings each: 2⁻⁴⁶ is more than 2⁴ times their error, so that
-/// the kept part of an edge is longer than its parameters' rounding, too.
+/// Error relative to the terms of the sums X, Y and W, each of which has three roundings: 2⁻⁴⁶ is more than 2⁴ times
+/// their error, so that the kept part of an edge is also longer than the rounding of its parameters.
 const double kAppearError = 1.0 / 70368744177664.0;
 
 #ifdef __cplusplus

@@ -33,7 +33,8 @@ mpq_class dot(const Rationals& a, const Rationals& b) {
 
 }  // namespace
 
-/// With x = centre + s u + t v + h n: s is (x − centre) · (v × n) / n · n, t is (x − centre) · (n × u) / n · n.
+/// For a point x = centre + s u + t v + h n: s = (x − centre) · (v × n) / (n · n), t = (x − centre) · (n × u) / (n ·
+/// n).
 struct CutEnds::Plane {
   glm::dvec3 center;
   LightWindow window;
@@ -52,7 +53,7 @@ struct CutEnds::Plane {
     const Rationals from = difference(a, center), to = difference(b, center);
     mpq_class ha = abs(dot(n, from)), hb = abs(dot(n, to));
     if (ha == 0 && hb == 0) ha = hb = 1;  // a and b are the same point of the plane
-    // The mean of both ends, each weighted with the other's height.
+    // The crossing is the mean of both ends, each weighted with the other's height.
     const auto mean = [&](const Rationals& along) {
       return mpq_class((dot(along, from) * hb + dot(along, to) * ha) / ((ha + hb) * squared));
     };
@@ -97,7 +98,7 @@ std::optional<glm::dvec3> CutEnds::far_crossing(const glm::dvec3& a, const glm::
   const glm::dvec2 at = in_window(x), size = side_.window.size();
   const double per_length =
       2 * std::max(glm::length(v - side_.window.shear * u) / size.x, glm::length(u) / size.y) / glm::length(n);
-  // Outside of the window by an eighth of its half-size, of which the uncertainty is at most a quarter.
+  // The crossing is outside of the window by an eighth of its half-size; its uncertainty is at most a quarter of that.
   const bool beside = std::max(std::abs(at.x), std::abs(at.y)) > 1.125;
   return beside && moved * per_length < 1.0 / 32 ? std::optional(side_.plane[0] + x) : std::nullopt;
 }
@@ -120,7 +121,7 @@ std::uint32_t CutEnds::in_plane(const Crossing& from, const Crossing& to) {
   const auto far = [&](const Crossing& at) {
     return at.a == at.b ? std::optional<glm::dvec3>() : far_crossing(stored(at.a), stored(at.b));
   };
-  // If both ends are certainly outside of the same side of the window, so is the edge.
+  // If both ends are certainly beyond the same side of the window, so is the edge.
   const std::optional<glm::dvec3> one = far(from), other = far(to);
   if (one && other) {
     const glm::dvec2 a = in_window(*one - side_.plane[0]), b = in_window(*other - side_.plane[0]);

@@ -11,13 +11,13 @@
 #include <optional>
 #include <vector>
 
-/// Points where edges cross a light's plane, before rounding: for areas that a float's rounding would affect. Inside
+/// Points where edges cross a light's plane, before rounding: for areas, which rounding to float would affect. Inside
 /// volumes/ only.
 namespace penumbra::volumes {
 
-/// An end of an edge: a point (scaled); or, where an edge crosses the plane on the light or near it, the place on the
-/// light as a fraction of its window (LightSide::window), rounded once from the exact value, regardless of the angle
-/// between edge and plane.
+/// An end of an edge. Usually a point (scaled). Where an edge crosses the plane on the light or near it: the place on
+/// the light as a fraction of its window (LightSide::window), rounded once from the exact value, regardless of the
+/// angle between edge and plane.
 struct CutEnd {
   glm::dvec3 point{0};
   std::optional<glm::dvec2> place = {};
@@ -28,7 +28,7 @@ class CutEnds {
   struct Edge {
     CutEnd a, b;
   };
-  /// Crossing of the edge a b with the plane; a = b: a is on it.
+  /// The crossing of the edge a b with the plane. If a = b: that point, which is in the plane.
   struct Crossing {
     glm::vec3 a{0}, b{0};
   };
@@ -38,9 +38,9 @@ class CutEnds {
   CutEnds(CutEnds&&) noexcept;
   CutEnds& operator=(CutEnds&&) noexcept;
 
-  /// Returns the index of an edge that crosses the plane or ends in it, cut there at its end a, or b.
+  /// Stores an edge that crosses the plane or ends in it, cut there at its end a (`at_a`) or b. Returns its index.
   std::uint32_t of_edge(const glm::vec3& a, const glm::vec3& b, bool at_a);
-  /// Returns the index of an edge in the plane; 0 if the edge does not touch the light.
+  /// Stores an edge in the plane. Returns its index; 0 if the edge does not touch the light.
   std::uint32_t in_plane(const Crossing& from, const Crossing& to);
 
   /// Returns the unscaled point of an end in the plane.

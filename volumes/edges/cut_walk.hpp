@@ -25,18 +25,18 @@ struct CutInput {
 };
 
 enum class PlaneSide : std::uint8_t { in_front, behind, across };
-/// Returns the side of an unscaled box. Certain except for boxes across the plane: their corners are closer to the
-/// plane than the rounding error.
+/// Returns the side of the plane that an unscaled box is on. `in_front` and `behind` are certain; a box on one side may
+/// be `across`, too, if it is closer to the plane than the rounding error.
 PlaneSide place_of(const LightSide& side, const glm::dvec3& middle, const glm::dvec3& half);
 
-/// Returns casters whose boxes the plane may cut, ascending.
+/// Returns the casters whose boxes the plane may cut, in ascending order.
 std::vector<std::uint32_t> triangles_across(const CutInput& input);
 
 /// Removes from `tree` everything behind the plane and everything that the plane cuts; appends the parts of cut records
 /// in front of it to `records`. `Tree` gives access to a hierarchy with eight children for each node and eight records
-/// for each leaf: roots(), reference(node, child) (TriangleTree::Child::reference), middle(node, child) and half(node,
-/// child), scaled; drop_child(node, child); has_record(leaf, slot), record(leaf, slot), not scaled; drop_record(leaf,
-/// slot).
+/// for each leaf. It must have roots(), reference(node, child) (TriangleTree::Child::reference), middle(node, child)
+/// and half(node, child), both scaled, drop_child(node, child), has_record(leaf, slot), record(leaf, slot), not scaled,
+/// and drop_record(leaf, slot).
 template <typename Tree>
 void cut_hierarchy(Tree& tree, const LightSide& side, CutEnds* ends, std::vector<EdgeRecord>& records) {
   using visibility::TriangleTree;

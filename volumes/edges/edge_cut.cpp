@@ -20,7 +20,7 @@ namespace {
 
 using visibility::SceneFloats;
 
-/// Returns the point where the edge a b crosses the side's plane; the same for (b, a).
+/// Returns the point where the edge a b crosses the side's plane. The result is the same for (b, a).
 glm::vec3 cut(const LightSide& side, const glm::vec3& a, const glm::vec3& b) {
   const glm::dvec3 n = glm::cross(side.u, side.v);
   glm::dvec3 from(side.stored(a)), to(side.stored(b));
@@ -70,7 +70,7 @@ bool keep_in_front(EdgeRecord& record, const LightSide& side, CutEnds* ends) {
   if (at_a <= 0 && at_b <= 0) return false;
   if (at_a > 0 && at_b > 0) return true;
   if (ends != nullptr) {
-    // An end in the plane counts as well: there edges in the plane begin, and rounding must not move it.
+    // An end in the plane is cut as well: edges in the plane begin there, and rounding must not move it.
     record.cut = ends->of_edge(record.a, record.b, at_a <= 0);
   } else if (at_a < 0 || at_b < 0) {
     (at_a < 0 ? record.a : record.b) = cut(side, record.a, record.b);
@@ -85,7 +85,7 @@ std::vector<EdgeRecord> edges_in_plane(const SceneFloats& scene, const EdgeCaste
   const auto rounded = [&](const Crossing& at) { return at.a == at.b ? at.a : cut(side, at.a, at.b); };
   for (const std::uint32_t triangle : triangles) {
     const std::array<glm::vec3, 3> corners = scene.corners(triangle);
-    // Walking around the triangle: the points where its boundary leaves the front, and where it returns.
+    // Walks around the triangle to find the points where its boundary leaves the front, and where it returns.
     std::optional<Crossing> leaves, returns;
     for (std::size_t i = 0; i < 3; ++i) {
       const glm::vec3 &a = corners[i], &b = corners[(i + 1) % 3];
@@ -94,7 +94,7 @@ std::vector<EdgeRecord> edges_in_plane(const SceneFloats& scene, const EdgeCaste
       if (from <= 0 && to > 0) returns = from == 0 ? Crossing{a, a} : Crossing{a, b};
     }
     if (!leaves || !returns) continue;
-    // Oriented like the corners: in front where those are counter-clockwise.
+    // The record is oriented like the corners: in front where those run counter-clockwise.
     EdgeRecord record{{}, {}, {plane_of(scene, casters, triangle), EdgeSide{}}};
     if (ends != nullptr) {
       record.cut = ends->in_plane(*leaves, *returns);

@@ -31,7 +31,7 @@ glm::dvec3 normal_of(const std::array<glm::vec3, 3>& corners) {
   return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
 }
 
-/// Returns for each plane the largest of its exactly coplanar triangles. `triangles` ascend.
+/// Returns for each plane the largest of its exactly coplanar triangles. `triangles` are in ascending order.
 std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span<const std::uint32_t> triangles) {
   const auto size_of = [&](std::uint32_t triangle) {
     const glm::dvec3 n = normal_of(scene.corners(triangle));
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
   std::vector<std::uint32_t> largest;
   resize_on_all_cores(largest, scene.triangles.size());
   for_each_index(largest.size(), [&](std::size_t plane) { largest[plane] = kNone; });
-  // A plane has the index of a triangle in it, usually the only one, or else the first.
+  // A plane has the index of a triangle in it: usually its only triangle, else its first.
   for_each_index(triangles.size(), [&](std::size_t i) {
     if (scene.plane[triangles[i]] == triangles[i]) largest[triangles[i]] = triangles[i];
   });
@@ -50,7 +50,7 @@ std::vector<std::uint32_t> largest_in_planes(const SceneFloats& scene, std::span
                        [&](std::uint32_t triangle) { return scene.plane[triangle] != triangle; });
   std::vector<double> sizes(others.size());
   for_each_index(others.size(), [&](std::size_t i) { sizes[i] = size_of(others[i]); });
-  std::uint32_t known = kNone;  // the plane whose largest triangle has `size`
+  std::uint32_t known = kNone;  // plane that `size` belongs to: the size of its largest triangle so far
   double size = 0;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const std::uint32_t plane = scene.plane[others[i]];
@@ -124,8 +124,8 @@ void EdgeRecords::keep_places() {
   });
 }
 
-/// Marks casters with a corner, or a plane's triangle with a corner, that has moved since the last frame. Returns false
-/// if vertices were merged or separated.
+/// Marks the casters of which a corner has moved since the last frame, or a corner of the triangle that they take their
+/// plane from. Returns false if vertices were merged or separated.
 bool EdgeRecords::find_moved() {
   const SceneFloats& scene = *scene_;
   std::vector<std::uint8_t> other(scene.positions.size());
@@ -167,7 +167,7 @@ EdgeSide EdgeRecords::side(std::uint32_t of) const {
   return side;
 }
 
-/// Returns whether k_e is 0 for every p: two triangles of one plane, on either side of the edge.
+/// Returns whether k_e is 0 for every p: whether the two triangles are in one plane, on either side of the edge.
 bool EdgeRecords::is_flat(const Pair& pair) const {
   if (pair.sides[1] == kNoSide) return false;
   const std::uint32_t plane = scene_->plane[triangle_of(pair.sides[0])];
@@ -230,8 +230,8 @@ bool EdgeRecords::follow(Pair& pair, std::span<const std::uint32_t> vertex) cons
   return true;
 }
 
-/// The casters are the same, and each side of each is at the same edge: so no edge is new, and edges have the same
-/// sides in the same order, by triangle index.
+/// Returns Followed::nothing unless the casters are the same, and each side of each caster is still at the same edge.
+/// Then no edge is new, and edges have the same sides in the same order, by triangle index.
 EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCasters& casters) {
   if (casters.triangle != kept_.casters || scene.positions.size() != kept_.places.size()) return Followed::nothing;
   scene_ = &scene;
@@ -249,8 +249,9 @@ EdgeRecords::Followed EdgeRecords::follow(const SceneFloats& scene, const EdgeCa
   const auto bends = [&](const Pair& pair) { return !is_flat(pair); };
   const auto moves = [&](const Pair& pair) { return has_moved(pair); };
   auto bent = std::partition(flat, pairs_.end(), bends);
-  // If much of the moving surface bends, the rest is flat by chance, and each of the next frames would bend some of it:
-  // all of it becomes records. Otherwise few records are added, the hierarchy hardly grows, and need not be rebuilt.
+  // If much of the moving surface bends, the rest of it is flat by chance, and some of it would bend in each of the
+  // next frames: then all of it becomes records. Otherwise few records are added, and the hierarchy hardly grows and
+  // need not be rebuilt.
   constexpr std::ptrdiff_t kMuch = 8;
   const std::ptrdiff_t moved = std::count_if(flat, pairs_.end(), moves);
   if (bent > flat && (kMuch * (bent - flat) > moved || kMuch * moved < flat - pairs_.begin()))

@@ -19,8 +19,8 @@
 namespace penumbra::volumes {
 
 /// One of an edge's triangles, which contributes sgn(n · (p − anchor)) to k_e(p). All three edges of a triangle have
-/// the same `anchor` and the same n up to its sign, so that p is on one side of the triangle for all three, regardless
-/// of the device's rounding.
+/// the same `anchor` and the same n up to its sign, so that p is on the same side of the triangle for all three,
+/// regardless of the device's rounding.
 struct EdgeSide {
   glm::vec3 n{0};  ///< not of unit length; 0: no triangle
   glm::vec3 anchor{0};
@@ -28,7 +28,7 @@ struct EdgeSide {
                                                             ///< nothing
 };
 
-/// An edge with two of its triangles; an edge with n triangles has ⌈n / 2⌉ records: k_e is their sum.
+/// An edge with two of its triangles. An edge with n triangles has ⌈n / 2⌉ records, and its k_e is their sum.
 struct EdgeRecord {
   glm::vec3 a{0}, b{0};
   std::array<EdgeSide, 2> sides;
@@ -43,26 +43,26 @@ struct EdgeCasters {
 /// `light_index`: this light's own body is excluded; −1: nothing is.
 EdgeCasters edge_casters(const visibility::SceneFloats& scene, std::int32_t light_index);
 
-/// Returns the plane of one of the casters, in front where its sorted corners run counter-clockwise. Exactly coplanar
-/// triangles take n and anchor from one of them, the largest: the edges between them are not among the records, so p
-/// must be on one side of all of them, regardless of the device's rounding.
+/// Returns the plane of one of the casters; in front of it, the triangle's sorted corners run counter-clockwise.
+/// Exactly coplanar triangles take n and anchor from one of them, the largest: the edges between them are not among the
+/// records, so p must be on the same side of all of them, regardless of the device's rounding.
 EdgeSide plane_of(const visibility::SceneFloats& scene, const EdgeCasters& casters, std::uint32_t triangle);
 
 /// All records whose k_e is not 0 everywhere. Each is computed on demand from stored edges and planes; a list of
 /// records would take half a gigabyte for ten million edges.
 class EdgeRecords {
  public:
-  /// Treatment of edges with k_e 0 everywhere.
+  /// Treatment of edges whose k_e is 0 everywhere.
   enum class Flat : std::uint8_t {
     dropped,
-    kept,  ///< stored separately: in another frame they may not be flat
+    kept,  ///< stored separately, since they may not be flat in another frame
   };
-  /// Both arguments must outlive this object; records and their normals use only the scene.
+  /// Both arguments must outlive this object. Records and their normals use only the scene.
   EdgeRecords(const visibility::SceneFloats& scene, const EdgeCasters& casters, Flat flat = Flat::dropped);
 
   enum class Followed : std::uint8_t {
-    all,      ///< each record is of the same edge as before; flat ones (is_flat()) contribute nothing now
-    more,     ///< after the old records there are new ones, which were flat; some of them still are
+    all,      ///< each record has the same edge as before; flat ones (is_flat()) contribute nothing now
+    more,     ///< new records follow the old ones: edges that were flat, some of which may still be flat
     nothing,  ///< edges have changed: vertices were merged or separated, or casters differ. Earlier data is lost
   };
   /// Updates records made with Flat::kept to the next frame, in which vertices have moved. The adjacency of edges is
@@ -80,7 +80,7 @@ class EdgeRecords {
            kept_.places.size() * (sizeof(glm::vec3) + 4);
   }
   [[nodiscard]] visibility::Bounds box(std::size_t record) const;
-  /// Returns n of its sides.
+  /// Returns the normals n of its sides.
   [[nodiscard]] std::array<glm::vec3, 2> normals(std::size_t record) const;
   /// Returns the scene index of one of its triangles.
   [[nodiscard]] std::uint32_t triangle(std::size_t record) const { return triangle_of(pairs_[record].sides[0]); }
@@ -91,8 +91,8 @@ class EdgeRecords {
 
   /// Two of an edge's triangles, or its last one.
   struct Pair {
-    std::uint32_t a, b;                  // positions
-    std::array<std::uint32_t, 2> sides;  // casters
+    std::uint32_t a, b;                  // indices of positions
+    std::array<std::uint32_t, 2> sides;  // indices of casters
   };
   [[nodiscard]] std::uint32_t triangle_of(std::uint32_t side) const { return casters_->triangle[side & ~kReversed]; }
   [[nodiscard]] EdgeSide side(std::uint32_t of) const;
@@ -115,10 +115,10 @@ class EdgeRecords {
   /// Data of the last frame, for Flat::kept.
   struct Kept {
     std::vector<glm::vec3> places;
-    std::vector<std::uint32_t> vertex;            // mesh::merge_equal
-    std::vector<std::uint32_t> casters, largest;  // for each caster: its index, and plane_of's choice
+    std::vector<std::uint32_t> vertex;            // vertex of each position (mesh::merge_equal)
+    std::vector<std::uint32_t> casters, largest;  // for each caster: its index, and the triangle that plane_of chose
     std::vector<mesh::Triangle> corners;          // for each caster
-    std::vector<std::uint8_t> moved;              // for each caster: it or its plane's triangle moved
+    std::vector<std::uint8_t> moved;              // for each caster: whether it or the triangle of its plane moved
   } kept_;
 };
 

@@ -16,12 +16,13 @@ namespace penumbra::volumes {
 
 /// Requirements of one light on the edge records.
 struct LightEdges {
-  bool has_body = false;                 ///< the light's body casts no shadow of it: the casters exclude it
-  std::optional<LightSide> front, back;  ///< emitting sides at whose plane records must be cut
+  bool has_body = false;                 ///< the light has a body, which casts no shadow of this light: the casters
+                                         ///< exclude it
+  std::optional<LightSide> front, back;  ///< emitting sides; set if records must be cut at the light's plane
 };
 
-/// Selects the edge records that a light needs: those of all casters, or, if it has a body or something lies behind its
-/// plane, its own.
+/// Selects the edge records that a light needs: those of all casters; or separate ones, if the light has a body or
+/// something lies behind its plane.
 class EdgeSides {
  public:
   /// `method` names the method in errors.

@@ -126,7 +126,7 @@ void for_each_edge_node(const TriangleTree& tree, float scale,
     for (std::size_t child = 0; child < children.size(); ++child) {
       const auto [middle, half] = visibility::child_texels(tree.nodes[node][child], scale);
       const Cone& cone = cones.of_child(node, child);
-      // Slightly widened: float32 rounds axis and cosine by 2⁻²⁴ each; and near 0 an angle is off by the root of its
+      // Slightly widened: float32 rounds axis and cosine by 2⁻²⁴ each. An angle near 0 is off by the root of its
       // cosine's rounding, 2⁻²⁶, a few times for each level, which is less than a quarter of the margin in 20 levels.
       const auto cosine = static_cast<float>(std::max(cone.cosine - 0x1p-18, 0.0));
       children[child] = {

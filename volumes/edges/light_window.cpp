@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The window of a light: a parallelogram of its plane, exact in the stored numbers.
+// The window of a light: a parallelogram of its plane, exact in the light's stored numbers.
 
 #include "volumes/edges/light_window.hpp"
 

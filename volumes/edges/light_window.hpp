@@ -10,7 +10,7 @@
 namespace penumbra::volumes {
 
 /// The points centre + x u + y (v − shear u) with (x, y) from `low` to `high`, where centre, u and v are those of the
-/// light's stored frame: so a place in the window is exact in the numbers that the light is stored with. A share is a
+/// light's stored frame. So a place in the window is exact in the numbers that the light is stored with. A share is a
 /// place in the window from (0, 0) to (1, 1).
 struct LightWindow {
   double shear = 0;
@@ -24,13 +24,14 @@ struct LightWindow {
   }
 };
 
-/// Returns the window: the span of a rectangle's own frame, or of the frame around a round light; for a polygon the
-/// rectangle around it along its frame's u, enlarged by 1/64 on each side: its outline is strictly inside.
+/// Returns the window. For a rectangle: the span of its own frame; for a round light: the span of the frame around it.
+/// For a polygon: the rectangle around it along its frame's u, enlarged by 1/64 on each side, so that the outline is
+/// strictly inside.
 LightWindow window_of(const visibility::Light& light);
 
 /// The window's axes in double, from the stored points; not scaled.
 struct WindowAxes {
-  glm::dvec3 corner{0}, u{0}, v{0};  ///< u, v: from the corner along the whole sides
+  glm::dvec3 corner{0}, u{0}, v{0};  ///< u and v run from the corner along the whole sides
   /// Condition of the frame relative to orthogonal axes: |u|₁ |v|₁ / |u × v| of the stored frame.
   double skew = 1;
 };

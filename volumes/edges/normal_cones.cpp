@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kWidth = visibility::TriangleTree::kWidth;
 constexpr NormalCone kAllDirections{{0, 0, 0}, 0};
-constexpr double kWidest = 1.57;  // radians: cones of nearly a half-space exclude nothing
+constexpr double kWidest = 1.57;  // in radians; a cone of nearly a half-space excludes nothing
 
 const double kLeastCosine = std::cos(kWidest);
 
@@ -29,7 +29,7 @@ NormalCone unless_wide(const NormalCone& cone) {
   return cone.cosine <= kLeastCosine ? kAllDirections : cone;
 }
 
-/// The mean of directions, each reversed if it opposes the sum of the previous ones; 0: there is none.
+/// The mean of directions, each reversed if it opposes the sum of the previous ones. The axis is 0 if there is no mean.
 class Middle {
  public:
   /// Adds a direction. Returns false if it was reversed.
@@ -58,7 +58,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, kWidth>;
 
-/// A direction of each record.
+/// One direction for each record.
 struct Directions {
   HWY_ALIGN std::array<std::array<double, kWidth>, 3> of;
 
@@ -76,7 +76,7 @@ struct Directions {
       hn::Store(hn::Mul(z, inverse), d, &of[2][i]);
     }
   }
-  /// Returns the dot products with the axis, each negated if its sign is negative.
+  /// Returns the dot products with the axis, each multiplied by its sign in `signs`.
   [[nodiscard]] hn::Vec<D> cosines(const glm::dvec3& axis, const double* signs, std::size_t i) const {
     const D d;
     const auto part = [&](int k) {
@@ -86,7 +86,7 @@ struct Directions {
   }
 };
 
-/// The second normal is oriented so that k_e = 0 where p is on the same side of both.
+/// The second normal of each record is oriented so that k_e = 0 where p is on the same side of both.
 NormalCone cone_of_records(const LeafNormals& records) {
   if (records.count == 0) return {};
   std::array<Directions, 2> n;

@@ -28,7 +28,7 @@ struct LeafNormals {
 /// Returns a cone that contains, up to sign, the two normals of each record such that k_e(p) = 0 where p is in front of
 /// both, or behind both.
 NormalCone cone_of(const LeafNormals& records);
-/// Returns a cone that contains all of these: at most as many as a node has children.
+/// Returns a cone that contains all of `cones`, of which there are at most as many as children of a node.
 NormalCone joined(std::span<const NormalCone> cones);
 
 }  // namespace penumbra::volumes

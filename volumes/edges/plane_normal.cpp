@@ -11,12 +11,13 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Returns x₁ y₂ − x₂ y₁ with x, y differences to the first corner; its error is at most a float's rounding of itself.
+/// Returns x₁ y₂ − x₂ y₁, where x and y are differences to the first corner. The error is at most the rounding to
+/// float.
 double minor(const std::array<glm::vec3, 3>& corners, int x, int y) {
   const glm::dvec3 a(corners[0]), e1 = glm::dvec3(corners[1]) - a, e2 = glm::dvec3(corners[2]) - a;
   const double left = e1[x] * e2[y], right = e2[x] * e1[y], value = left - right;
-  // Two roundings of factors and one each of products and difference: 4 · 2⁻⁵³ of the products. Where that is below
-  // 2⁻²⁶ of the value, the rounding to float takes at most three quarters of the allowed error.
+  // The two factors, the product and the difference are each rounded: the error is 4 · 2⁻⁵³ of the products. Where that
+  // is below 2⁻²⁶ of the value, the rounding to float takes at most three quarters of the allowed error.
   if (std::abs(value) >= 0x1p-25 * (std::abs(left) + std::abs(right))) return value;
   const auto difference = [&](std::size_t corner, int axis) {
     return mpq_class(mpq_class(static_cast<double>(corners[corner][axis])) - mpq_class(a[axis]));

@@ -20,7 +20,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostSamples = 32;
 
-/// Error below 2⁻⁴⁰ of the result and of the coordinates.
+/// Returns the distance from p to the triangle's edges. Its error is below 2⁻⁴⁰ of the result and of the coordinates.
 double distance_to_rim(const glm::vec3& p, const std::array<glm::vec3, 3>& corners) {
   double nearest = kInfinity;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -15,13 +15,14 @@ namespace penumbra::volumes {
 /// Relation of at most 32 light samples to the carrier's plane, as bits.
 struct Horizon {
   std::uint32_t above = 0;  ///< strictly above the plane; exact
-  std::uint32_t open = 0;   ///< those of `above` for which sums over edges may be wrong
+  std::uint32_t open = 0;   ///< samples in `above` for which sums over edges may be wrong
 };
 
-/// Triangles on the carrier's plane are not met, but their edges count. If rounding moved p behind the plane, the
-/// segments from p to a point l cross the plane no farther from p than |h(p)| / h(l) of their length, h the height over
-/// it. If no edge of a triangle on the plane is that near, the segments to the light's centre and to a light sample
-/// cross the same of these triangles, and the exact count at the centre and the sum over edges omit the same for both.
+/// Triangles on the carrier's plane do not block anything, but their edges count. If rounding moved p behind the plane,
+/// the segment from p to a point l crosses the plane within |h(p)| / h(l) of its length from p, h being the height over
+/// the plane. If no edge of a triangle on the plane is that near to p, the segments to the light's centre and to a
+/// light sample cross the same of these triangles. The exact count at the centre and the sum over edges then omit the
+/// same triangles for both.
 class CarrierHorizon {
  public:
   /// `alone`: no other triangle is on its plane. `facing`: ViewSamples::facing.

@@ -12,8 +12,8 @@ Foot foot_of(dvec3 p) {
   return Foot(dvec2(dot(push.u_dual, P), dot(push.v_dual, P)), -1.0LF / dot(push.n, P));
 }
 
-/// Returns the projection (X, Y, W) of x, which is relative to p. The same for all edges that end in x: their parts
-/// along the ray to x must cancel.
+/// Returns the projection (X, Y, W) of x, which is relative to p. The result is the same for all edges that end in x,
+/// since their parts along the ray to x must cancel.
 dvec3 project(dvec3 x, Foot foot) {
   precise const double w = dot(push.n, x) * foot.inverse;
   precise const double u = dot(push.u_dual, x) + foot.at.x * w;
@@ -24,8 +24,7 @@ dvec3 project(dvec3 x, Foot foot) {
 /// Returns 1 if p is on the side that n points to, else −1.
 int facing_of(Foot foot) { return foot.inverse < 0.0LF ? 1 : -1; }
 
-/// Returns the side of the plane (c, a, b) that p is on: the sign that decides whether the count at c changes at this
-/// edge.
+/// Returns the side of the plane (c, a, b) that p is on. This sign decides whether the count at c changes at the edge.
 int turn_of(dvec3 a, dvec3 b, dvec3 p, Foot foot) {
   const Value side = det(a - push.c, b - push.c, p - push.c);
   return side.value > side.bound ? facing_of(foot) : side.value < -side.bound ? -facing_of(foot) : kNoTurn;

@@ -47,8 +47,8 @@ std::optional<bool> in_cone(const LightVolumes& volumes, const VolumeCap& cap, c
   for (std::size_t i = 0; i < 3; ++i) {
     look_at_determinant(signs, glm::dvec3(cap.corners[i]) - l, glm::dvec3(cap.corners[(i + 1) % 3]) - l, d);
   }
-  // Selects the cone, not its opposite: (a, b, c) as directions from l are negative for corners counter-clockwise from
-  // l.
+  // Selects the cone, not its opposite: for corners that are counter-clockwise from l, the determinant (a, b, c) of
+  // their directions from l is negative.
   signs.look(-1, 0);
   return signs.agree();
 }
@@ -173,7 +173,7 @@ std::optional<std::vector<std::int32_t>> counts_at(const LightVolumes& volumes, 
     const glm::dvec3 a = cap.corners[0];
     Agreement beyond;
     look_at_determinant(beyond, glm::dvec3(cap.corners[1]) - a, glm::dvec3(cap.corners[2]) - a, x - a);
-    if (!beyond.doubt && beyond.up) return false;  // on l's side
+    if (!beyond.doubt && beyond.up) return false;  // x is on l's side
     return beyond.doubt ? std::nullopt : cone;
   });
 }

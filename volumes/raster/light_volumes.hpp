@@ -42,14 +42,14 @@ struct LightVolumes {
   std::vector<VolumeEdge> edges;
   std::vector<VolumeCap> caps;         ///< of every triangle whose plane does not contain l
   std::vector<std::uint8_t> left_out;  ///< for each of the scene's triangles: excluded by Layers::one_a_solid, in
-                                       ///< addition to the light's own body; empty: none
-  std::vector<gpu::VolumePart> parts;  ///< each with all edges and caps of some volumes; empty: one part without bounds
+                                       ///< addition to the light's own body; empty: no triangle is
+  std::vector<gpu::VolumePart> parts;  ///< each has all edges and caps of some volumes; empty: one part without bounds
 };
 
 /// Triangles that have a volume.
 enum class Layers {
   every_triangle,
-  one_a_solid,  ///< of closed parts only the triangles of one layer: closed_casters.hpp
+  one_a_solid,  ///< of each closed part only the triangles of one layer (closed_casters.hpp)
 };
 
 /// Everything that casts shadows, with its edges. `scene` must outlive this object.
@@ -66,14 +66,14 @@ class ShadowCasters {
   /// Returns the part of seen_from() that needs no facings: for each caster, the sides on which l must be for it to
   /// count (bit 0: front, bit 1: back).
   [[nodiscard]] std::vector<std::uint32_t> counted_sides(const glm::vec3& l, const visibility::Light& light) const;
-  /// Returns the volumes, given for each caster the side that l is on in bits 0 and 1, those of them that count in bits
-  /// 2 and 3, and the edges with k_e(l) ≠ 0 of counting casters.
+  /// Returns the volumes, given the edges with k_e(l) ≠ 0 of counting casters, and for each caster the side that l is
+  /// on (bits 0 and 1 of `sides`) and which of these bits count (bits 2 and 3).
   [[nodiscard]] LightVolumes assembled(const glm::vec3& l, std::span<const std::uint32_t> sides,
                                        std::span<const mesh::SilhouetteEdge> edges) const;
 
   [[nodiscard]] std::size_t size() const { return casters_.size(); }
   [[nodiscard]] std::span<const mesh::Triangle> triangles() const { return triangles_; }
-  /// Returns the index of each caster's component, connected by edges; from 0 on.
+  /// Returns for each caster the index, from 0 on, of its component: the casters that edges connect to it.
   [[nodiscard]] std::vector<std::uint32_t> components() const;
   /// Returns for each caster its index among the scene's triangles.
   [[nodiscard]] std::span<const std::uint32_t> numbers() const { return casters_; }
@@ -89,7 +89,7 @@ class ShadowCasters {
   visibility::ClosedCasters parts_;  // for one_a_solid
 };
 
-/// Returns the number of triangles of each part that the ray from l in this direction meets; nullopt if double cannot
+/// Returns for each part how many of its triangles the ray from l in this direction meets; nullopt if double cannot
 /// decide.
 std::optional<std::vector<std::int32_t>> counts_along(const LightVolumes& volumes, const glm::dvec3& direction);
 

@@ -32,7 +32,7 @@ glm::dvec3 seen_on(std::uint32_t face, const glm::dvec3& x) {
   return {x[(axis + 1) % 3], x[(axis + 2) % 3], face % 2 == 0 ? x[axis] : -x[axis]};
 }
 
-/// Returns the position, 0 to kSide, for across or down divided by depth, −1 to 1.
+/// Returns the position in cells, 0 to kSide, for `share`: across or down divided by depth, −1 to 1.
 double place(double share) {
   return 0.5 * (share + 1) * ReceiverCells::kSide;
 }
@@ -230,7 +230,8 @@ PlaneDepths::Range PlaneDepths::in(const CellBlock& block, std::uint32_t x, std:
 }
 
 bool PlaneDepths::covers_middle(std::uint32_t face, std::uint32_t x, std::uint32_t y) const {
-  const glm::dvec3 direction = direction_of(face, x + 0.5371, y + 0.4219);  // on no diagonal of the face
+  const glm::dvec3 direction = direction_of(face, x + 0.5371, y + 0.4219);  // offsets chosen so that the ray is on no
+                                                                            // diagonal of the face
   for (std::size_t i = 0; i < 3; ++i) {
     if (!(glm::dot(planes_[i], direction) > errors_[i] * norm1(direction))) return false;
   }

@@ -66,7 +66,7 @@ std::vector<CellBlock> blocks_of_box(const glm::dvec3& lower, const glm::dvec3& 
 template <typename Visit>
 void for_each_cell_along(const glm::dvec3& a, const glm::dvec3& b, Visit&& visit);
 
-/// A conservative range of the depths of a plane n · x = d in a cell, no wider than the block's.
+/// Returns conservative ranges of the depths of a plane n · x = d in a cell, no wider than the block's range.
 class PlaneDepths {
  public:
   PlaneDepths(const std::array<glm::dvec3, 3>& corners);
@@ -74,20 +74,21 @@ class PlaneDepths {
     double least, most;
   };
   [[nodiscard]] Range in(const CellBlock& block, std::uint32_t x, std::uint32_t y) const;
-  /// Returns whether a ray through the middle of the cell certainly meets the triangle. The same ray for all triangles.
+  /// Returns whether a ray through the middle of the cell certainly meets the triangle. All triangles are tested with
+  /// the same ray.
   [[nodiscard]] bool covers_middle(std::uint32_t face, std::uint32_t x, std::uint32_t y) const;
 
  private:
   glm::dvec3 n_;
   double d_;
-  std::array<glm::dvec3, 3> planes_;  // through l and an edge, all toward the triangle
+  std::array<glm::dvec3, 3> planes_;  // each through l and an edge, with a normal toward the triangle
   std::array<double, 3> errors_;
 };
 
 /// Returns the vector from l, on a face of the cube: (across, down, 1) for place (x, y) in cells.
 glm::dvec3 direction_of(std::uint32_t face, double x, double y);
 
-/// A segment's ends on a face, in cells; segments_of omits faces on which it does not appear.
+/// A segment's ends on a face, in cells. segments_of omits faces on which the segment does not appear.
 struct CellSegment {
   std::uint32_t face;
   glm::dvec2 from, to;

@@ -18,7 +18,7 @@ namespace penumbra::volumes {
 namespace {
 
 /// Callers may rely on an eighth of a pixel. The rest is for the rasteriser: corners snap to a grid of at least 2⁴
-/// places a pixel (Vulkan's minimum of subPixelPrecisionBits), so move by up to √2/32 = 0.045, and are floats, off by
+/// places per pixel (Vulkan's minimum of subPixelPrecisionBits), so move by up to √2/32 = 0.045, and are floats, off by
 /// less than 0.01 in pictures up to 2¹⁵ pixels wide.
 constexpr double kBoxPad = 0.25;
 
@@ -113,8 +113,9 @@ std::optional<ScreenBox> BoxFinder::around(std::span<const FaceCorner> polygon) 
     reach = glm::max(reach, glm::length(d));
   }
   // In double a corner is off by 8 · 2⁻⁵³ · reach · a (a: the longer of across_ and upward_, at least 1, forward_'s
-  // length). At a depth of more than 1e-9 · reach · a its projection, up to two of these over the depth, times up to
-  // 16384 pixels, is off by less than a thirtieth of a pixel: kBoxPad covers that in addition to the guaranteed eighth.
+  // length). At a depth of more than 1e-9 · reach · a, the projection is off by up to two of these errors divided by
+  // the depth, times up to 16384 pixels. That is less than a thirtieth of a pixel, which kBoxPad covers in addition to
+  // the guaranteed eighth.
   const double least_depth = 1e-9 * reach * glm::max(1.0, glm::max(glm::length(across_), glm::length(upward_)));
   // One pixel more than the screen on every side: a face there can still come within an eighth of a pixel.
   const glm::dvec2 limit = 1.0 + 1.0 / half_;

@@ -27,8 +27,8 @@ struct ScreenBox {
 /// Throws InputError for an orthographic camera: volumes are drawn in perspective.
 void require_perspective(const visibility::PinholeCamera& camera);
 
-/// Finds the region in which the rasteriser looks for the pixels of a face. The region only proposes: shaders decide
-/// (volumes/README.md, Counting).
+/// Finds the region in which the rasteriser looks for the pixels of a face. The region only proposes pixels; shaders
+/// decide (volumes/README.md, Counting).
 class BoxFinder {
  public:
   explicit BoxFinder(const visibility::PinholeCamera& camera);
@@ -45,7 +45,7 @@ class BoxFinder {
   [[nodiscard]] bool appears_at(const glm::dvec3& x, const glm::dvec2& there) const;
 
  private:
-  glm::dvec3 eye_, across_, upward_, forward_;  // of a frustum of half-width and half-height 1
+  glm::dvec3 eye_, across_, upward_, forward_;  // axes of a frustum of half-width and half-height 1
   glm::dvec2 half_;                             // half the picture, in pixels
 };
 

@@ -4,9 +4,9 @@
 // not of its pixels between the least and the largest depth; all volumes are tested together; a hierarchy over tiles
 // replaces the rasteriser's stages.
 //
-// Triangles of the carrier's plane do not count, and so a tile whose view samples are in several planes is never whole.
-// For the tiles of one plane, the remaining faces are those of all other triangles: their caps, the sides of silhouette
-// edges, and the sides of edges where the triangles of the plane end, which cancel no longer (`Rim`).
+// Triangles of the carrier's plane do not count, so a tile whose view samples are in several planes is never whole. For
+// the tiles of one plane, the remaining faces are those of all other triangles: their caps, the sides of silhouette
+// edges, and the sides of edges where the triangles of the plane end, which no longer cancel (`Rim`).
 
 #include "volumes/raster/shadow_tiles.hpp"
 
@@ -45,8 +45,8 @@ struct Block {
 /// A convex set of points x relative to l: direction · x ≥ offset for each bound. Directions are products of up to
 /// three differences of floats; `error` times the 1-norms of x bounds the rounding of direction · x − offset.
 ///
-/// Each component of a product of two vectors is off by at most 8 units (2⁻⁵³) of the product of their 1-norms, that of
-/// three by 18, and direction · x adds 8: 32 of them are kDeterminantError, of which two are taken.
+/// Each component of a product of two vectors is off by at most 8 units (2⁻⁵³) of the product of their 1-norms, and of
+/// a product of three by 18; direction · x adds 8. kDeterminantError is 32 units; twice that is taken.
 class ConvexFace {
  public:
   [[nodiscard]] bool misses(const Block& block) const {
@@ -60,7 +60,7 @@ class ConvexFace {
     return false;
   }
 
-  /// Returns the side of the edge a b, from there away from l to infinity.
+  /// Returns the side face of the edge a b, which extends from the edge away from l to infinity.
   static ConvexFace side(const glm::dvec3& a, const glm::dvec3& b) {
     ConvexFace face;
     const glm::dvec3 n = glm::cross(a, b), along = b - a;
@@ -115,10 +115,10 @@ struct Rim {
   glm::vec3 a, b;
 };
 
-/// Returns the rims of these planes: edges at which their triangles, counter-clockwise as seen from l, do not cancel.
+/// Returns the rims of these planes: edges at which their triangles (counter-clockwise as seen from l) do not cancel.
 std::vector<Rim> rims_of(const LightVolumes& volumes, const std::set<std::uint32_t>& planes) {
   struct Directed {
-    Rim rim;  ///< a before b
+    Rim rim;  ///< with ordered ends: a before b
     std::int32_t sign;
   };
   const auto place = [](const glm::vec3& x) { return std::tuple(x.x, x.y, x.z); };
@@ -143,7 +143,8 @@ std::vector<Rim> rims_of(const LightVolumes& volumes, const std::set<std::uint32
   return rims;
 }
 
-/// Quadtree over the tiles of some rows: level 0 are the tiles, each further level has a block for four.
+/// Quadtree over the tiles of some rows: level 0 is the tiles; each further level has a block for each four of the
+/// level below.
 class TileTree {
  public:
   TileTree(const glm::vec3& l, std::span<const gpu::VolumeReceiver> receivers, std::uint32_t width) {

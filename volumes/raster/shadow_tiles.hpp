@@ -15,11 +15,11 @@ namespace penumbra::volumes {
 inline constexpr std::uint32_t kTileSide = 8;
 inline constexpr std::uint32_t kNoPixel = 0xffffffffU;
 
-/// View samples that are to be counted so that all counts are known.
+/// The view samples that must be counted so that all counts are known.
 struct TilePlan {
-  std::vector<std::uint32_t> stand_ins;  ///< for each pixel the one that has the same count: itself, or of a whole tile
-                                         ///< its first counted pixel; kNoPixel where nothing is counted
-  std::uint64_t tiles = 0, whole = 0;    ///< tiles with counted pixels, and those of them that no face touches
+  std::vector<std::uint32_t> stand_ins;  ///< for each pixel, a counted pixel with the same count: itself or, in a whole
+                                         ///< tile, the tile's first counted pixel; kNoPixel where nothing is counted
+  std::uint64_t tiles = 0, whole = 0;    ///< number of tiles with counted pixels, and how many of them no face touches
 };
 
 /// Finds the whole tiles among rows of `width` pixels: those inside or outside each shadow volume. Conservative: a tile

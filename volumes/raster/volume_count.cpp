@@ -52,8 +52,8 @@ render::RasterPass make_pass(const render::Device& device, FaceKind kind, bool b
                                      .triangle_strip = true});
 }
 
-/// Returns whether p is projected into its pixel, and so is the intersection of the line from p to l with the carrier's
-/// plane. Rounding moved p off both; next to the camera, or under grazing light, that can be pixels.
+/// Returns whether p is projected into its pixel, and also the point where the line from p to l meets the carrier's
+/// plane. Rounding moved p; next to the camera, or under grazing light, this can be several pixels.
 bool appears_in_place(const BoxFinder& boxes, const std::array<glm::vec3, 3>& carrier, const glm::vec3& p,
                       const glm::vec3& l, const glm::dvec2& center) {
   const glm::dvec3 a = carrier[0], to_light = glm::dvec3(l) - glm::dvec3(p);
@@ -215,7 +215,7 @@ void VolumeCount::State::classify(const Tile& tile) {
   }
 }
 
-/// Leaves one view sample of each whole tile.
+/// Leaves only one view sample of each whole tile to be counted.
 void VolumeCount::State::leave_out_whole_tiles() {
   PENUMBRA_ASSERT(volumes.parts.empty(), "tiles of volumes in {} parts", volumes.parts.size());
   TilePlan plan = plan_tiles(volumes, receivers, samples->width);

@@ -6,10 +6,10 @@
 #include "volumes/raster/volume_count.shared.h"
 #include "volumes/raster/determinant.glsl"
 
-// Intersection of the ray from p away from the eye (z-fail), or of the segment from the eye to p (z-pass), with this
-// face of shadow volumes, inward or outward. Decided by signs of determinants in double that must all agree;
-// volumes/README.md, Counting, derives them. Where the result depends on a sign that may be due to rounding, the pixel
-// is marked and the host counts.
+// Decides whether the ray from p away from the eye (z-fail), or the segment from the eye to p (z-pass), meets this face
+// of shadow volumes, and whether it enters or leaves them there. Signs of determinants in double must all agree for
+// that; volumes/README.md, Counting, derives them. Where the result depends on a sign that may be due to rounding, the
+// pixel is marked and the host counts.
 //
 // P, A, B: p, a, b relative to l.  D: p relative to the eye.  (x, y, z): their determinant.
 
@@ -17,8 +17,8 @@ layout(constant_id = 0) const uint kFace = 0;   // 0: side, 1: fan at infinity, 
 layout(constant_id = 1) const uint kZPass = 0;
 layout(constant_id = 2) const uint kParts = 0;  // 1: faces belong to parts, whose bounds apply
 
-layout(scalar, binding = 0) readonly buffer Faces { VolumeFace faces[]; };  // used by the vertex shader; one set for
-                                                                            // both stages
+layout(scalar, binding = 0) readonly buffer Faces { VolumeFace faces[]; };  // used by the vertex shader; both stages
+                                                                            // have the same descriptor set
 layout(scalar, binding = 1) readonly buffer Receivers { VolumeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Counts { int counts[]; };
 layout(scalar, binding = 3) buffer Doubts { uint doubts[]; };  // kDoubtBit; below it, the number of changes of the
@@ -60,7 +60,8 @@ int agreement(uint seen) {
   return seen == kUp ? 1 : -1;
 }
 
-/// Returns whether the segment from the eye to p is followed, not the ray beyond p. The same for all faces of a part.
+/// Returns whether faces on the segment from the eye to p count, not those on the ray beyond p. The same for all faces
+/// of a part.
 bool counts_before(dvec3 P) {
   if (kParts == 0 || (parts[face_part].bounds & kToggles) == 0) return kZPass != 0;
   precise const dvec3 b = parts[face_part].barrier * P;
@@ -68,7 +69,8 @@ bool counts_before(dvec3 P) {
   return height > 0.0LF;
 }
 
-/// Returns signs that equal h's where the ray meets a side between the planes of its part, at P − (f / h) d.
+/// The ray meets a side at P − (f / h) d. Returns signs that equal h's if this point is between the planes of the
+/// side's part.
 uint between_planes(dvec3 P, dvec3 d, Value h, Value f) {
   if (kParts == 0) return 0;
   const uint bounds = parts[face_part].bounds;
@@ -105,8 +107,8 @@ int fan(dvec3 P, dvec3 d, dvec3 l, dvec3 apex, dvec3 a, dvec3 b) {
   return direction == kUnknown ? kUnknown : -direction;
 }
 
-/// Returns the contribution of an edge's fan in the plane n · x = offset, which the ray beyond p meets at Q = (r P + g
-/// d) / r.
+/// Returns the contribution of an edge's fan in the plane n · x = offset. The ray beyond p meets that plane at Q = (r P
+/// + g d) / r.
 int fan_in_plane(dvec3 P, dvec3 d, dvec3 l, double offset, dvec3 a, dvec3 b) {
   const dvec3 A = a - l, B = b - l, n = parts[face_part].axis;
   const Value r = along(n, d), g = sum(Value(offset, 0.0LF), negative(along(n, P)));

@@ -23,8 +23,8 @@ namespace penumbra::volumes {
 /// Exact (z_fail): the count is the number of triangles that the open segment from p to `center()` meets, by
 /// visibility::segment_meets_triangle, without triangles coplanar with the carrier, and without the triangles of closed
 /// parts that `layers` excludes. Any soup, camera and light. Faces are rasterised and counted in 32-bit integers, so
-/// their order cannot matter and nothing wraps. Volumes may come in parts (LightVolumes::parts), each cut by planes, or
-/// counted before p or beyond it depending on the pixel (z_fail).
+/// their order cannot matter and nothing wraps. Volumes may come in parts (LightVolumes::parts). Each part may be cut
+/// by planes, and may be counted between the eye and p, or beyond p, depending on the pixel (z_fail).
 class VolumeCount {
  public:
   /// `in_parts`: volumes will come in parts; passes for them are made immediately.
@@ -37,7 +37,8 @@ class VolumeCount {
   VolumeCount(VolumeCount&&) noexcept;
   VolumeCount& operator=(VolumeCount&&) noexcept;
 
-  /// Each borrows its argument until the next call. Call in this order; each later one any number of times.
+  /// Each function borrows its argument until its next call. Call them in this order; the later ones any number of
+  /// times.
   void prepare_mesh(const visibility::SceneFloats& scene);
   void prepare_light(const visibility::Light& light);
   void prepare_view(const visibility::ViewSamples& samples);
@@ -45,12 +46,12 @@ class VolumeCount {
   /// Returns the casters found by prepare_mesh.
   [[nodiscard]] const ShadowCasters& casters() const;
 
-  /// Replace the first two calls, or after prepare_mesh the second, if the caller finds the volumes of lights
-  /// (ShadowCasters, with the same layers).
+  /// For callers that find the volumes of lights themselves (ShadowCasters, with the same layers). These replace
+  /// prepare_mesh and prepare_light(light), or only the latter.
   void prepare_scene(const visibility::SceneFloats& scene);
   void prepare_light(const visibility::Light& light, LightVolumes volumes);
 
-  /// Pixels whose light is decided without counting.
+  /// How a pixel's light is decided; only `counted` needs the count.
   enum class Kind : std::uint8_t {
     lit,      ///< background, the body of a light, or surfaces that receive no shadow
     dark,     ///< the centre is not above the carrier's plane, or p not in front of the light
@@ -62,7 +63,7 @@ class VolumeCount {
   /// Results for the tile counted last, row by row. The count is 0 where the kind is not `counted`.
   [[nodiscard]] std::span<const std::int32_t> counts() const;
   [[nodiscard]] std::span<const Kind> kinds() const;
-  /// Returns 1 where the host counted because a sign is within rounding; so wherever p is on a triangle that has a
+  /// Returns 1 where the host counted because a sign is within rounding. This includes all p on a triangle that has a
   /// volume.
   [[nodiscard]] std::span<const std::uint32_t> doubts() const;
 
@@ -79,9 +80,9 @@ class VolumeCount {
     std::uint64_t fragments = 0;       ///< approximate number of proposed fragments: the areas of the screen boxes
     std::uint64_t updates = 0;         ///< updates of counts: stencil writes in other implementations
     std::uint64_t toggling_parts = 0;  ///< parts that toggle
-    std::uint64_t tiles = 0, whole_tiles = 0;  ///< of decide_whole_tiles
+    std::uint64_t tiles = 0, whole_tiles = 0;  ///< set by decide_whole_tiles
     std::uint64_t counted_pixels = 0;          ///< view samples that were counted
-    bool from_eye = false;                     ///< z_pass_from_eye was used as such
+    bool from_eye = false;                     ///< z_pass_from_eye was requested and did not fall back to z_fail
     std::uint64_t doubtful_pixels = 0;         ///< counted on the host, because a sign was within its error bound
     std::uint64_t largest_count = 0;
   };

@@ -88,8 +88,8 @@ class Covers {
   std::vector<std::size_t> touched_;
 };
 
-/// Calls visit(cluster) for the clusters that a triangle may be in front of, until visit returns false. `covers`:
-/// omits cells in which another caster hides all that the triangle could hide; nullptr: omits none.
+/// Calls visit(cluster) for the clusters that a triangle may be in front of, until visit returns false. If `covers` is
+/// not null, omits cells in which another caster hides all that the triangle could hide.
 template <typename Visit>
 void for_each_behind(const ReceiverCells& cells, const Covers* covers, const VolumeCap& cap, const glm::vec3& l,
                      Visit&& visit) {
@@ -120,7 +120,7 @@ class Stretches {
     if (all_.size() > 4096) join(0);
   }
 
-  /// Merges stretches until at most `most` remain, across the narrowest gaps first; also closes gaps below a tenth of
+  /// Merges stretches until at most `most` remain, across the narrowest gaps first. Always closes gaps below a tenth of
   /// the whole range.
   std::vector<std::pair<double, double>> few(std::size_t most) {
     join(0);
@@ -159,7 +159,7 @@ struct Caster {
   double nearest = 0, end = 0;  // range of the corners along the axis; nearest is -infinity if the caster cannot be cut
 };
 
-/// Least cosine between the axis and the direction of any corner for a caster that planes across the axis can cut.
+/// Least cosine between the axis and the direction of each corner, for a caster that planes across the axis can cut.
 constexpr double kLeastCosine = 0.05;
 
 std::vector<Caster> casters_in(const LightVolumes& volumes, const std::vector<std::uint32_t>& components) {

@@ -11,8 +11,8 @@
 #include <map>
 #include <string>
 
-/// Cheaper shadow volumes with the same shadows: at every view sample of the picture, a count of these is 0 exactly if
-/// a count of all volumes is 0. A caster here is a set of triangles connected by edges.
+/// Cheaper shadow volumes with the same shadows: at every view sample of the picture, their count is 0 exactly if the
+/// count of all volumes is 0. A caster here is a set of triangles connected by edges.
 namespace penumbra::volumes {
 
 struct LeanVolumes {
@@ -20,9 +20,9 @@ struct LeanVolumes {
   std::map<std::string, std::uint64_t> counters;  ///< numbers of omitted volumes, by names of `--stats`
 };
 
-/// D. B. Lloyd et al. 2004, CC shadow volumes: casters that hide nothing from any view sample, or only samples that
-/// nearer casters hide, have no volume; the volumes of others are restricted to their view samples, in up to four
-/// stretches.
+/// D. B. Lloyd et al. 2004, CC shadow volumes: a caster has no volume if it hides nothing from any view sample, or
+/// hides only samples that nearer casters hide. The other casters' volumes are restricted to the view samples behind
+/// them, in up to four stretches.
 LeanVolumes culled_and_clamped(const visibility::SceneFloats& scene, const ShadowCasters& casters,
                                const visibility::Light& light, const visibility::ViewSamples& samples);
 
@@ -32,8 +32,9 @@ LeanVolumes culled_by_hierarchy(const visibility::SceneFloats& scene, const Shad
                                 const visibility::TriangleTree& tree, const visibility::Light& light,
                                 const visibility::ViewSamples& samples);
 
-/// S. Laine 2005, split-plane shadow volumes: for each caster, view samples nearer to the eye than the plane through
-/// its middle and l count before them, and the others beyond.
+/// S. Laine 2005, split-plane shadow volumes: for each caster, the plane through its middle and l divides the view
+/// samples. For those nearer to the eye than the plane, faces between the eye and them are counted; for the others,
+/// faces beyond them.
 LeanVolumes split_by_planes(const ShadowCasters& casters, const visibility::Light& light,
                             const visibility::ViewSamples& samples);
 

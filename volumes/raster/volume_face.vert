@@ -5,13 +5,13 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_float64 : require
 #include "volumes/raster/volume_count.shared.h"
 
-// Proposes pixels for one face (an instance): its screen box as a strip of four vertices. No near or far plane, no
-// depth: the fragment shader decides.
+// Proposes pixels for one face (an instance): its screen box, as a strip of four vertices. Uses no near or far plane
+// and no depth, since the fragment shader decides.
 
 layout(scalar, binding = 0) readonly buffer Faces { VolumeFace faces[]; };
 layout(scalar, push_constant) uniform Push { VolumePush push; };
 
-// Passed on instead of read again: some drivers read buffers one lane after the other.
+// Passed on, so that the fragment shader need not read it again: some drivers read buffers one lane after the other.
 layout(location = 0) flat out vec3 a;
 layout(location = 1) flat out vec3 b;
 layout(location = 2) flat out vec3 c;

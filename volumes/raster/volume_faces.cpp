@@ -61,7 +61,7 @@ class Finder {
   VolumeFaces found_;
 };
 
-/// Adds the face `make` returns for each item, if it has a screen box.
+/// Adds the face that `make` returns for each item, if it has a screen box.
 template <typename Item, typename Make>
 void Finder::add_faces(FaceKind kind, const std::vector<Item>& items, const Make& make) {
   std::vector<gpu::VolumeFace> faces(items.size());
@@ -92,7 +92,7 @@ void Finder::choose_apex() {
     for (std::uint32_t part = 0; part < counts->size(); ++part) {
       if (is_bounded(part, gpu::kHasUpper) || (*counts)[part] == 0) continue;
       found_.at_start += (*counts)[part];
-      // the count starts at another value than 0
+      // a part whose count does not start at 0 cannot toggle
       if (is_bounded(part, gpu::kToggles)) found_.parts[part].bounds &= ~gpu::kToggles;
     }
     return;
@@ -104,13 +104,13 @@ bool Finder::is_bounded(std::uint32_t part, std::uint32_t by) const {
   return part < found_.parts.size() && (found_.parts[part].bounds & by) != 0;
 }
 
-/// Returns the factor by which points beyond x on the part's plane are farther from l than x.
+/// Returns the t for which l + t (x − l) is on this plane across the part's axis.
 double Finder::offset_of(const glm::dvec3& x, std::uint32_t part, double plane) const {
   const double(&n)[3] = found_.parts[part].axis;
   return plane / glm::dot(glm::dvec3(n[0], n[1], n[2]), x - glm::dvec3(volumes_.l));
 }
 
-/// A part that contains the eye is counted beyond p everywhere.
+/// A part that contains the eye, or may contain it, is counted beyond p everywhere.
 void Finder::stop_toggling_at_eye() {
   if (found_.parts.empty()) return;
   const std::optional<std::vector<std::int32_t>> counts = counts_at(volumes_, camera_.eye);

@@ -27,11 +27,11 @@ struct VolumeFaces {
     std::vector<gpu::VolumeFace> faces;
   };
   std::vector<Kind> kinds;
-  std::vector<gpu::VolumePart> parts;  ///< of the volumes; those that cannot toggle are marked
-  bool before = false;                 ///< follows the segment from the eye to p, not the ray beyond p
+  std::vector<gpu::VolumePart> parts;  ///< the volumes' parts; those that cannot toggle have lost kToggles
+  bool before = false;                 ///< counts on the segment from the eye to p, not on the ray beyond p
   glm::dvec3 apex{0};                  ///< the direction where all fans at infinity meet
   std::int32_t at_start = 0;           ///< initial value of every pixel's count
-  std::int32_t at_eye = 0;             ///< count that z_pass ignores
+  std::int32_t at_eye = 0;             ///< count at the eye, which z_pass ignores
   std::uint64_t fragments = 0;         ///< approximate number of fragments: the areas of all boxes
 
   [[nodiscard]] std::size_t count(FaceKind kind) const;

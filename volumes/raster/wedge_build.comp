@@ -14,7 +14,7 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Silhouettes { Silhouette silhouettes[]; };
-layout(scalar, binding = 1) readonly buffer Ends { uvec2 ends[]; };  // of every edge
+layout(scalar, binding = 1) readonly buffer Ends { uvec2 ends[]; };  // ends of every edge
 layout(scalar, binding = 2) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 3) readonly buffer Corners { dvec3 corners[]; };  // corners of the light's hull
 layout(scalar, binding = 4) writeonly buffer Wedges { BuiltWedge wedges[]; };
@@ -51,8 +51,8 @@ double least_direction(dvec3 m, Caster caster) {
   return least;
 }
 
-/// Returns, of the light's normal and the direction to the edge's nearest point, the one along which edge and light are
-/// farther apart. A heuristic: planes rotated toward it are proved afterwards.
+/// Returns the direction along which edge and light are farther apart: the light's normal, or the direction to the
+/// edge's nearest point. This is a heuristic; planes rotated toward it are proved afterwards.
 dvec3 away_of(Caster caster) {
   const dvec3 across = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const dvec3 normal = across / length(across) * (dot(across, caster.a - corners[0]) < 0.0LF ? -1.0LF : 1.0LF);
@@ -86,8 +86,8 @@ bool bounds_penumbra(dvec3 n, double d, Caster caster) {
   return proved;
 }
 
-/// Returns the normal of the plane that contains `at`, `direction` and a corner, and leaves no corner beyond
-/// (tangent_normal).
+/// Returns the normal of the plane that contains `at`, `direction` and a corner of the hull, and has no corner on its
+/// positive side (tangent_normal in penumbra_wedge.cpp).
 dvec3 tangent_normal(dvec3 at, dvec3 direction, double turn) {
   dvec3 extreme = turn * cross(direction, corners[0] - at);
   for (uint i = 1; i < push.corner_count; ++i) {
@@ -104,7 +104,7 @@ void main() {
   Caster caster = Caster(dvec3(positions[edge_ends.x]), dvec3(positions[edge_ends.y]), dvec3(0.0LF));
   caster.away = away_of(caster);
 
-  // Moves the far end towards the light's centre, until both ends are equally far.
+  // Moves the farther end towards the light's centre, until both ends are equally far.
   const dvec3 c = push.center;
   const double to_a = length(caster.a - c), to_b = length(caster.b - c);
   const dvec3 a = to_a > to_b ? c + (caster.a - c) * (to_b / to_a) : caster.a;
@@ -112,9 +112,9 @@ void main() {
 
   bool proved = true;
   for (uint k = 0; k < kBuiltPlanes; ++k) {
-    // Front and back contain the moved edge; the sides contain an end, and the direction orthogonal to the edge and to
-    // the direction to the light. The other end is as far from c: only one of the two tangents can have it on its
-    // positive side.
+    // Front and back contain the moved edge. Each side contains an end, and the direction that is orthogonal to the
+    // edge and to the direction to the light. The other end is as far from c, so only one of the two tangents can have
+    // it on its positive side.
     const dvec3 through = k == 3 ? b : a;
     const dvec3 direction = k < 2 ? b - a : cross(b - a, c - through);
     const dvec3 wanted = tangent_normal(through, direction, k == 0 || k == 3 ? 1.0LF : -1.0LF);
@@ -125,7 +125,7 @@ void main() {
     const double offset = -dot(n, through), least = max(-at_a.value, -at_b.value);
     const double reach = max(largest(caster.a), largest(caster.b));
     const double d = max(offset, least) + 4.0LF * (at_a.bound + at_b.bound + kProofError * abs(offset));
-    // A plane that would have to be rotated or moved by more is not a plane of this wedge (as in bounding_plane).
+    // If a plane would have to be rotated or moved by more, it is not a plane of this wedge (as in bounding_plane).
     proved = proved && turn <= kMostTurn && least - offset <= kMostTurn * reach && bounds_penumbra(n, d, caster);
     wedges[i].planes[k] = BuiltPlane(n.x, n.y, n.z, d);
   }

@@ -24,7 +24,7 @@ constexpr auto wedges_option(const char* help) {
       "wedges", {{"device", WedgesOn::device}, {"host", WedgesOn::host}}, WedgesOn::device, help};
 }
 
-/// Silhouettes of a light's centre and their wedges, built for each light: needed in each frame for a moving light.
+/// Silhouettes of a light's centre and their wedges. They are built for each light: for a moving light, in each frame.
 ///
 /// Silhouettes of device and host are the same edges in the same order. Wedges differ in their numbers, but every plane
 /// satisfies bounds_penumbra exactly in both cases. The device builds `original` wedges of four planes; the host builds
@@ -36,7 +36,7 @@ class WedgeBuilder {
     WedgesOn on = WedgesOn::device;
     Construction construction = Construction::original;
     Layers layers = Layers::one_a_solid;
-    std::uint64_t most_bytes = 0;  ///< limit of any buffer; 0: the device's limit. Tests make it small
+    std::uint64_t most_bytes = 0;  ///< limit of the size of any buffer; 0: the device's limit. Tests set a small limit
   };
   WedgeBuilder(const render::Device& device, const Options& options);
   ~WedgeBuilder();
@@ -49,7 +49,7 @@ class WedgeBuilder {
   struct Built {
     LightVolumes volumes;
     LightWedges wedges;
-    std::uint64_t facings_on_host = 0;  ///< triangles whose side floats left open, or all
+    std::uint64_t facings_on_host = 0;  ///< triangles whose side floats left open, possibly all
     std::uint64_t edges_on_host = 0;    ///< edges whose wedges the host built, possibly all
   };
   /// Builds silhouettes and wedges of a planar light.

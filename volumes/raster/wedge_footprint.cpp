@@ -24,8 +24,8 @@ double cross(const glm::dvec2& u, const glm::dvec2& v) {
   return u.x * v.y - u.y * v.x;
 }
 
-/// A convex polyhedron by its faces; each face has its own copies of the corners. Half-spaces are moved outward by 2⁻⁴⁰
-/// of the terms of their heights, more than the rounding here.
+/// A face of a convex polyhedron; each face has its own copies of the corners. Half-spaces are moved outward by 2⁻⁴⁰ of
+/// the terms of their heights, which is more than the rounding here.
 using Loop = std::vector<glm::dvec3>;
 
 /// Returns the corners on a plane with this normal, in order around their middle.
@@ -189,7 +189,7 @@ void FootprintFinder::add_projection(const Wedge& wedge, Points& points) const {
   }
 }
 
-/// Returns the corners of blocks in the polygon that may have a receiver in one of the wedges.
+/// Returns the corners of those blocks in the polygon that may have a receiver in one of the wedges.
 Points FootprintFinder::blocks_in(std::span<const Wedge> pieces, const Points& polygon) const {
   glm::dvec2 lower = polygon.front(), upper = lower;
   for (const glm::dvec2& p : polygon) {

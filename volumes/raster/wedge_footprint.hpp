@@ -31,7 +31,7 @@ enum class WedgeTests {
   none,  ///< wedges are cut by the box of all receivers
   z,     ///< footprints are also cut by the hull of the blocks of pixels whose receivers' box is not beyond a plane of
          ///< the wedge
-  both,  ///< as z; receivers that face away from the light's centre, which are dark, are ignored
+  both,  ///< as z, and receivers that face away from the light's centre, which are dark, are ignored
 };
 
 /// Places of receivers, by square blocks of pixels: wedges, which have no caps, are cut by them.
@@ -58,21 +58,21 @@ class Receivers {
       }
     }
   }
-  /// Returns a distance along the view axis: half of the nearest receiver's, so that no visible point is cut off or
-  /// projected to infinity.
+  /// Returns half of the nearest receiver's distance along the view axis. At this distance no visible point is cut off
+  /// or projected to infinity.
   [[nodiscard]] double nearest() const { return nearest_; }
-  /// Returns the largest coordinate.
+  /// Returns the largest coordinate of any receiver.
   [[nodiscard]] double reach() const { return reach_; }
 
  private:
-  static constexpr std::uint32_t kBlock = 8;  // pixels a side
+  static constexpr std::uint32_t kBlock = 8;  // pixels along each side
   std::uint32_t columns_ = 0, rows_ = 0;
   std::vector<Box> blocks_;  // lower > upper for blocks without receivers
   Box bounds_;
   double nearest_ = 0, reach_ = 0;
 };
 
-/// Finds the screen region of the receivers in a wedge. The region only proposes: shaders decide.
+/// Finds the screen region of the receivers in a wedge. The region only proposes pixels; shaders decide.
 class FootprintFinder {
  public:
   /// Borrows the receivers.

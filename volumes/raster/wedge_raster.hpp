@@ -25,19 +25,19 @@ struct LightWedges {
 };
 LightWedges wedges_of(const LightVolumes& volumes, const visibility::Light& light, Construction construction);
 
-/// Returns the faces of wedges that may have a receiver on the screen. `center` is the light's.
+/// Returns the faces of wedges that may have a receiver on the screen. `center`: the light's centre.
 std::vector<gpu::WedgeFace> faces_of(const LightWedges& wedges, const visibility::ViewSamples& samples,
                                      WedgeTests tests, const glm::dvec3& center);
 
 /// Returns the approximate number of pixels that the faces propose: the areas of their footprints.
 std::uint64_t fragments_of(std::span<const gpu::WedgeFace> faces);
 
-/// Returns push constants with the duals of a planar light's axes (visibility::LightFrame) around center_of, without a
-/// tile.
+/// Returns push constants with the duals of a planar light's axes (visibility::LightFrame) around center_of. The fields
+/// of the tile are not set.
 gpu::WedgePush wedge_push(const visibility::Light& light);
 
 /// Returns whether p is projected to within a sixteenth of a pixel of its pixel's centre. If not, footprints may miss
-/// it: rounding moved p, next to the camera by up to several pixels.
+/// p: rounding has moved it, which next to the camera may be several pixels.
 bool appears_in_place(const visibility::PinholeCamera& camera, const glm::vec3& p, std::size_t pixel);
 
 struct WedgeShader {
@@ -45,7 +45,7 @@ struct WedgeShader {
   std::span<const std::uint32_t> fragment;
   std::vector<std::uint32_t> constants{};
   std::uint32_t words = 1;  ///< words of sums for each receiver
-  bool table = true;        ///< whether it reads a table
+  bool table = true;        ///< whether the shader reads a table
 };
 
 /// Rasterises wedges and adds up the fragment shader's result for each wedge at each receiver: in integers, so the
@@ -57,7 +57,7 @@ class WedgeRaster {
   WedgeRaster(WedgeRaster&&) noexcept;
   WedgeRaster& operator=(WedgeRaster&&) noexcept;
 
-  /// Sets the content of the shader's last binding; one 0 by default.
+  /// Sets the content of the shader's last binding, which is a single 0 by default.
   void set_table(std::span<const double> table);
 
   /// Adds the faces' sums at the tile's receivers, row by row; sets `push.width` and the tile's rows.

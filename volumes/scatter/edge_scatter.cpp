@@ -34,8 +34,8 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::uint32_t kBlock = 8;           // pixels, as in edge_scatter.glsl
-constexpr std::uint32_t kMostBandWords = 16;  // 64 light rows: the capacity of a question
+constexpr std::uint32_t kBlock = 8;           // in pixels, as in edge_scatter.glsl
+constexpr std::uint32_t kMostBandWords = 16;  // words for 64 light rows: the capacity of a question
 
 constexpr visibility::ChoiceOption kExactRows{
     "rows",
@@ -91,7 +91,7 @@ class EdgeScatter final : public EdgeMethod {
     return device().limits().max_shared_memory / (4 * device().limits().subgroup_size);
   }
 
-  /// Masks in words of 8 columns × 4 rows; the words of a column are contiguous.
+  /// Arranges masks in words of 8 columns × 4 rows; the words of a column are contiguous.
   device::MaskLayout arrange_rows() {
     points_.reset();
     rows_ = light().rows;
@@ -114,15 +114,16 @@ class EdgeScatter final : public EdgeMethod {
   [[nodiscard]] std::uint32_t row_words() const { return (rows_ + 3) / 4; }
   [[nodiscard]] std::uint32_t column_words() const { return (columns_ + 7) / 8; }
 
-  /// Returns a lane's words, as scatter_points.comp counts them; `rows` is a multiple of kPointRowsAtOnce.
+  /// Returns the number of words of a lane, counted as in scatter_points.comp; `rows` is a multiple of
+  /// kPointRowsAtOnce.
   static std::uint32_t words_of_points(std::uint32_t fours, std::uint32_t rows) {
     return rows * fours + rows / 4 + rows * fours / 8;
   }
 
-  /// Masks with a bit for each slot; bands of nearly equal height within the available memory.
+  /// Arranges masks with a bit for each slot, in bands of nearly equal height that fit into the available memory.
   device::MaskLayout arrange_points() {
     constexpr std::uint32_t kStep = gpu::kPointRowsAtOnce;
-    constexpr std::uint32_t kWordsAFour = kStep + kStep / 8;  // words_of_points has kStep / 4 more
+    constexpr std::uint32_t kWordsAFour = kStep + kStep / 8;  // words_of_points adds kStep / 4 to these
     PointRows points = make_point_rows(device_light().coordinates, (room() - kStep / 4) / kWordsAFour);
     rows_ = points.rows;
     columns_ = points.columns;
@@ -252,7 +253,7 @@ class EdgeScatter final : public EdgeMethod {
   struct Points {
     render::Buffer places, starts, slots;
     std::uint32_t fours;            ///< as in PointRows
-    std::vector<glm::uvec2> words;  ///< content of `slots`
+    std::vector<glm::uvec2> words;  ///< content of the `slots` buffer
   };
   std::optional<Points> points_;  // for light samples that are not in rows of a rectangle
   std::optional<render::ComputePass> scatter_;

@@ -16,7 +16,7 @@ constexpr float kNowhere = 1e30F;
 
 using Row = std::vector<std::uint32_t>;
 
-/// Returns the row of height y, in cells. Exact: y is a float, and the half is added in double.
+/// Returns the row that height y, in cells, is in. Exact: y is a float, and the half is added in double.
 std::uint32_t row_of(float y, std::uint32_t rows) {
   return static_cast<std::uint32_t>(std::clamp(std::floor(static_cast<double>(y) + 0.5), 0.0, rows - 1.0));
 }
@@ -70,7 +70,7 @@ PointRows make_point_rows(std::span<const glm::vec2> coordinates, std::uint32_t 
   PointRows all;
   std::vector<glm::vec2> places;
   std::vector<Row> rows;
-  // Starts with square cells: errors are those of the finer side of a cell.
+  // Starts with square cells, since the error of a place is relative to a cell's shorter side.
   for (double height = 1;; height /= 2) {
     all.rows = static_cast<std::uint32_t>(std::max(1.0, std::round(std::sqrt(count) / height)));
     all.columns = static_cast<std::uint32_t>(std::max(1.0, std::round(count / all.rows)));

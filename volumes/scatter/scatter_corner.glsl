@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The depth at the light's corner, to which changes are added. Part of scatter_edges.comp and scatter_points.comp.
+// Bounds: docs/edge-scatter.md.
 
 // Opens the pixel if p is within rounding of a triangle whose side is not certain: half of all directions from p depend
 // on that side, not only those close to its edges. Such a triangle is in the list of those that the segment to the
@@ -64,7 +65,7 @@ uint count_to_corner(uint head, bool on, bool one_will_do) {
           const float error = (2.0 * error_x + 4.0 * kRound * size) * size + 2.0 * error_x * error_x;
           const bool all_above = all(greaterThan(f, vec3(error))), all_below = all(lessThan(f, vec3(-error)));
           const bool passes = any(greaterThan(f, vec3(error))) && any(lessThan(f, vec3(-error)));
-          // Height over p of the intersection of line and triangle's plane: the mean of the corners' heights, with
+          // Height over p of the point where the ray meets the triangle's plane: the mean of the corners' heights, with
           // weights f.
           const float total = f.x + f.y + f.z, at_meeting = (f.y * w.x + f.z * w.y + f.x * w.z) / total;
           const float error_w = 16.0 * kRound * (far + push.reach) + 6.0 * error * far / max(abs(total), 1e-30);

@@ -2,7 +2,7 @@
 // Selects the edges of a list that affect the view samples of a subgroup, one lane for each edge, and scatters them.
 // Part of scatter_edges.comp and scatter_points.comp.
 
-// The box of the group's view samples in each frame that edges are tested in.
+// The box of the group's view samples, in each frame in which edges are tested.
 struct GroupBounds {
   vec3 middle, half_size;
   vec3 in_grid_low, in_grid_high;                         // (across, along, axis) · (p - middle)
@@ -27,10 +27,10 @@ GroupBounds bounds_of_group(bool on) {
   return g;
 }
 
-// Bounds of the place of x on the light for any view sample of the group: lower and upper (X, Y), if `bounded`. With h
-// the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so the
-// corners bound it. X − foot and H − h are differences taken from the group's middle: h / (H − h) may be thousands, and
-// feet are rounded over the light.
+// Bounds of the place where x appears on the light from any view sample of the group: lower and upper (X, Y), valid if
+// `bounded`. With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h). It is
+// linear in X − foot and in h / (H − h), so the corners of both ranges bound it. X − foot and H − h are computed as
+// differences from the group's middle, because h / (H − h) may be thousands, and the feet on the light are rounded.
 struct Range {
   vec2 low, high;
   bool bounded;
@@ -88,9 +88,9 @@ Multiplicities multiplicities(vec3 n1, vec3 anchor1, uint plane1, vec3 n2, vec3 
   return m;
 }
 
-const uint kQueue = kLanes > 32 ? 2 * kLanes : 64;        // one more vote of the subgroup must always fit
-uint queue[kQueue];                                       // edges; every lane has a copy: shared memory holds the
-                                                          // histogram
+const uint kQueue = kLanes > 32 ? 2 * kLanes : 64;        // must hold one more vote of the subgroup at any time
+uint queue[kQueue];                                       // queued edges; every lane has a copy, since shared memory is
+                                                          // used by the histogram
 uint queued;
 
 // Projects and scatters the queued edges.
@@ -98,7 +98,7 @@ void drain(bool on, GroupBounds g) {
   const vec2 light_low = first_cell - half_cells, light_high = first_cell + half_cells;
   uint i = 0;
   for (; i < queued; i += kLanes) {
-    // Tests, one edge in each lane, whether the edge can affect this group, and which view samples.
+    // Tests, one edge in each lane, whether the edge can affect this group, and which of its view samples.
     const bool used = i + gl_SubgroupInvocationID < queued;
     const int texel = int(used ? queue[i + gl_SubgroupInvocationID] : 0);
     const uvec4 t0 = texelFetch(record_a, texel), t1 = texelFetch(record_b, texel), t2 = texelFetch(record_n1, texel);

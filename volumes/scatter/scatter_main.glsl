@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Main function of the second pass of edge scatter: computes the visibility bits of a few view samples from the lists
-// of edges and triangles. Included by scatter_edges.comp and scatter_points.comp.
+// of edges and triangles. Included by scatter_edges.comp and scatter_points.comp. Bounds: docs/edge-scatter.md.
 
 void main() {
   make_frame();
@@ -25,16 +25,16 @@ void main() {
 
   bool on = inside && at.carrier != kNone;
   const bool receives = on;
-  // Condition (2): p strictly on an emitting side of the light's plane. (bound level)
+  // Condition (2) of docs/definitions.md: p is strictly on an emitting side of the light's plane. (bound level)
   const float error_level = level_error(at.p);
   if (on && abs(at.height) <= error_level) {
-    open_pixel = push.side > 0.0;                         // of the two sides' dispatches only one asks the host
+    open_pixel = push.side > 0.0;                         // both sides have a dispatch, but only one asks the host
     on = false;
   }
   const bool other_side = receives && at.height < -error_level;
   if (other_side) on = false;
-  // Condition (1): the light sample strictly above the carrier's plane, which is one half-plane of the light. (bound
-  // horizon)
+  // Condition (1) of docs/definitions.md: the light sample is strictly above the carrier's plane. The part of the light
+  // above that plane is bounded by one line. (bound horizon)
   const vec3 towards = -from_center;
   const vec3 above = vec3(dot(at.normal, push.u), dot(at.normal, push.v), dot(at.normal, towards));
   const float error_above = 16.0 * kRound * (size1(towards) + size1(push.u) + size1(push.v) + size1(at.p)) + push.deviation;
@@ -43,8 +43,8 @@ void main() {
   if (below) on = false;
 
   if (on && sees_flat(away, at.height)) open_pixel = true;
-  // Refers to the whole light, not to this band: if a pixel's mask is read, each of its bands must have written its
-  // words.
+  // `any_touched` refers to the whole light, not to this band: if a pixel's mask is read, each of its bands must have
+  // written its words.
   const bool any_touched = subgroupAny(on && (push.touched_low | push.touched_high) != 0);
 
   uint visible = receives ? 0 : all_samples;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One projected edge for one view sample: its changes, and the samples that rounding leaves open because of it. Part of
-// scatter_edges.comp and scatter_points.comp.
+// Handles one projected edge for one view sample: its changes, and the samples that rounding leaves open because of it.
+// Part of scatter_edges.comp and scatter_points.comp. Bounds: docs/edge-scatter.md.
 
-// Returns p + d in the coordinates of projections: (across, along) · d and its height over p; its place is foot +
-// height / w (x, y).
+// Returns p + d in the coordinates used for projection: x, y = (across, along) · d, and w, its height over p. It
+// appears on the light at foot + height / w · (x, y).
 vec3 seen_direction(vec3 d) {
   precise const float w = -dot(axis, d);
   precise const vec2 direction = vec2(dot(across, d), dot(along, d));
@@ -24,11 +24,11 @@ float error_of(float far, float w, float height, float from_foot, float away) {
          (per_length + from_foot / height) * push.deviation;
 }
 
-// Adds one projected edge to the changes of depths, k times. `error_a`, `error_b`: errors of its ends' coordinates.
-// Defined in scatter_rows.glsl or scatter_points.glsl.
+// Adds one projected edge to the changes of depths, with multiplicity k. `error_a`, `error_b`: errors of its ends'
+// coordinates. Defined in scatter_rows.glsl or scatter_points.glsl.
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b);
 
-// Returns sgn(n · (p − anchor)); sets `open` if it is within its error.
+// Returns sgn(n · (p − anchor)); sets `open` if the product is within its rounding error.
 int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   precise const vec3 d = p - anchor;
   precise const float f = dot(n, d);
@@ -36,10 +36,11 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
   return f > 0.0 ? 1 : f < 0.0 ? -1 : 0;
 }
 
-// Scatters one edge, k times. Unless the edge stays well above p for the whole group (`settled`), its part outside of a
-// window of about twice the light is clipped, so that ends near p's height, or behind p, do not affect precision in the
-// window. Where p is within rounding of one of the triangles' planes (`open`), that triangle is a sliver: the samples
-// that it may hide are as close to its edges as if the edges were displaced by `sliver`. (bound window, bound sliver)
+// Scatters one edge with multiplicity k. Unless the edge stays well above p for the whole group (`settled`), its part
+// outside of a window of about twice the light is clipped, so that ends near p's height, or behind p, do not affect
+// precision in the window. If p is within rounding of one of the triangles' planes (`open`), that triangle is a sliver:
+// the samples that it may hide are as close to its edges as if the edges were displaced by `sliver`. (bound window,
+// bound sliver)
 void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
   const vec3 way_a = seen_direction(da), way_b = seen_direction(db);

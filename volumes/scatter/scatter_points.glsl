@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arbitrary light samples, in rows (point_rows.hpp): changes by one edge, and samples that rounding leaves open. Part
-// of scatter_points.comp.
+// of scatter_points.comp. Bounds: docs/edge-scatter.md.
 #include "volumes/scatter/point_rows.shared.h"
 
-layout(constant_id = 3) const uint kFours = 4;            // slots of a row, in fours
+layout(constant_id = 3) const uint kFours = 4;            // number of slots of a row, divided by four
 layout(constant_id = 4) const uint kBandRows = 16;        // a multiple of kPointRowsAtOnce
 
 layout(scalar, binding = 14) buffer Questions {
   QuestionHead asked;
   PointQuestion questions[];
 };
-// Places of each four slots of a row: their x and their y, in cells, from left to right, then slots without a light
-// sample.
+// Places of each four slots of a row, in cells: their x, then their y. Light samples are stored from left to right;
+// slots without a light sample follow.
 layout(scalar, binding = 15) readonly buffer Places { vec4 places[]; };
-// Starts, for each row and each place along it, left to right: the four slots with the first light sample that is as
-// far right.
+// For each row, and each place along it from left to right: the four slots with the first light sample at or after that
+// place.
 layout(scalar, binding = 16) readonly buffer Starts { uint starts[]; };
 // A bit for each slot, in words of masks: whether it is a light sample, and whether some triangle touches that sample.
 layout(scalar, binding = 17) readonly buffer Slots { uvec2 slots[]; };
 
-// A lane's words: changes from a slot on to the end of its row, a byte for each slot; changes of whole rows from one on
-// upward, a byte for each row; open slots, a bit each.
+// A lane's words in the histogram: a byte for each slot, the change from this slot on to the end of its row; a byte for
+// each row, the change of this row and all above it; a bit for each open slot.
 const uint kChanges = kBandRows * kFours, kMaskWords = kChanges / 8, kLeftWord = kChanges, kOpenWord = kLeftWord + kBandRows / 4;
 const float kBeyond = 1e29;                               // x of slots without light sample
 
@@ -87,14 +87,14 @@ void change_left(float y, int by, bool when) {
   add_bytes(kLeftWord + band_row / 4, when && from <= last_row ? uint(by & 0xff) << (band_row % 4 * 8) : 0);
 }
 
-// Adds one projected edge, k times. The path to a light sample runs from the light's corner up its left side to the
-// middle of its row, along the row to a place under or over the light sample, and vertically to it. The last part
-// crosses only edges at the light sample's x.
+// Adds one projected edge with multiplicity k. The path to a light sample runs from the light's corner up its left side
+// to the middle of the sample's row, along the row to the place under or over the light sample, and vertically to it.
+// Its last part crosses only edges that span the light sample's x.
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   k = push.side < 0.0 ? -k : k;                           // seen from behind, counter-clockwise is clockwise in (X, Y)
   const bool up = a.y < b.y;
   const vec2 low = up ? a : b, high = up ? b : a, direction = high - low, size = abs(direction);
-  const int jump = up ? -k : k;                           // change of the depth to the right of it
+  const int jump = up ? -k : k;                           // change of the depth to the right of the edge
   const float left = min(low.x, high.x), right = max(low.x, high.x);
 
   // The farther end's error counts by the fraction of the edge that is on the light. (bound side of a point)
@@ -120,14 +120,14 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   change_left(high.y, jump, high.x < -0.5);
   change_left(low.y, -jump, low.x < -0.5);
 
-  // A flatter edge may be next to any light sample of a row. (bound side of a point)
+  // An edge flatter than this may be next to any light sample of a row. (bound side of a point)
   const bool leans = size.y > 1e-6 * size.x;
   const float slope = leans ? direction.x / direction.y : 0.0;
   const float beside = leans ? aside * (1.0 + abs(slope)) + 16.0 * kRound * (abs(low.x) + size.x) : 1e30;
   int row = int(clamp(ceil(low_near.y - 0.5), float(first_row), float(last_row + 1)));
   const int end = int(clamp(floor(high_near.y + 0.5) + 1.0, float(first_row), float(last_row + 1)));
   uint four = kNone;                                      // the next four slots of this row
-  int before = 0;                                         // number of times that the jump is in the changes up to there
+  int before = 0;                                         // how often the changes up to here include the jump
   do {
     const bool on = row < end;
     const float middle = float(row), bottom = max(middle - 0.5, low_near.y), top = min(middle + 0.5, high_near.y);

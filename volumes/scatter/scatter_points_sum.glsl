@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts changes to depths, and depths to masks, for arbitrary light samples. Part of scatter_points.comp.
+// Converts changes to depths, and depths to masks, for arbitrary light samples. Part of scatter_points.comp. Bounds:
+// docs/edge-scatter.md.
 
 uint mask_word(uint pixel, uint word) { return (push.first_pixel + pixel) * (band_count() * kMaskWords) + first_word() + word; }
 
@@ -16,8 +17,8 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
         depths = uint(left & 0xff) << 24;
         ++row;
       }
-      // Depths are in 0 … 127. Larger ones: 128 … 190, since no change exceeds 63. Negative ones, −63 … −1, are those
-      // of light samples that are open anyway.
+      // Valid depths are in 0 … 127. Since no change exceeds 63, a larger depth appears as 128 … 190. Negative depths,
+      // −63 … −1, are those of light samples that are open anyway.
       uint sums = histogram[lane_word(word * 8 + i)];
       sums = bytes_sum(sums, sums << 8);
       sums = bytes_sum(sums, sums << 16);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Light samples in rows of a rectangle: changes by one edge, and samples that rounding leaves open. Part of
-// scatter_edges.comp.
+// scatter_edges.comp. Bounds: docs/edge-scatter.md.
 
 layout(constant_id = 3) const uint kColumns = 16;         // columns of light samples
 layout(constant_id = 4) const uint kWordsPerColumn = 4;   // four light rows in a word: rows of a band / 4
@@ -82,8 +82,9 @@ float row_shift(int row) {
 // light sample.
 bool may_change(vec2 low, vec2 high) { return low.x < -0.5 || floor(high.y) >= ceil(low.y); }
 
-// Records the open samples where the change at (row, x) may be anywhere within `error` of x: the nearest light sample,
-// if it is that close; the whole row, if others are, too, or if x may be on either side of the beginning of the row.
+// Records the light samples left open by a change that may be anywhere within `error` of x in this row: the nearest
+// sample, if it is that close; or the whole row, if other samples are that close, too, or if x may be on either side of
+// the row's beginning.
 void open_near(float row, float x, float error, bool when) {
   const bool in_band = row >= float(first_row) && row <= float(last_row);
   const float column = x - row_shift(int(clamp(row, 0.0, float(push.rows - 1)))), nearest = round(column);
@@ -95,22 +96,23 @@ void open_near(float row, float x, float error, bool when) {
 
 void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   k = push.side < 0.0 ? -k : k;                           // seen from behind, counter-clockwise is clockwise in (X, Y)
-  // Computed from the end nearer to the light's middle, so that errors of far ends, which grow with their distance,
-  // have little effect.
+  // Computes from the end nearer to the light's middle, so that the error of the far end, which grows with its
+  // distance, has little effect.
   const vec2 to_a = abs(a - first_cell), to_b = abs(b - first_cell);
   const bool turn = to_b.x + to_b.y < to_a.x + to_a.y;
   const vec2 near = turn ? b : a, far = turn ? a : b;
   const float error_near = turn ? error_b : error_a, error_far = turn ? error_a : error_b;
-  const int jump = (near.y < far.y) == turn ? k : -k;     // crossing the edge to the right, if it runs upward: −k
+  const int jump = (near.y < far.y) == turn ? k : -k;     // change of the depth to the right of the edge: −k if it runs
+                                                          // upward
   const vec2 direction = far - near, low = min(a, b), high = max(a, b);
   const float slope = direction.x / direction.y, steep = direction.y == 0.0 ? 1e30 : abs(slope);
 
-  // Ends within their error of a row may be on either side of it, which leaves the row open there.
+  // An end within its error of a row may be on either side of the row, which leaves the row open there.
   const vec2 rows = vec2(round(near.y), round(far.y));
   open_near(rows.x, near.x, 1.2 * error_near * (1.0 + steep), abs(near.y - rows.x) < error_near);
   open_near(rows.y, far.x, 1.2 * error_far * (1.0 + steep), abs(far.y - rows.y) < error_far);
 
-  // Effect of the far end's error on a crossing on the light.
+  // Weight of the far end's error at a crossing on the light.
   const float weight = min(1.0, (abs(near.y - first_cell.y) + 2.0 * half_cells.y) / abs(direction.y));
   const float error_x = 1.2 * (error_near + weight * error_far) * (1.0 + steep) + 8.0 * kRound * (half_cells.x + abs(near.x));
 
@@ -131,7 +133,7 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
       const int shift = int(band_row & 3) * 8;
       const uint old = histogram[word];
       const int changed = bitfieldExtract(int(old), shift, 8) + jump;
-      open = open || abs(changed) > 63;                   // many layers at once
+      open = open || abs(changed) > 63;                   // many layers change there
       histogram[word] = bitfieldInsert(old, uint(changed), shift, 8);
     }
     open_sample(float(row), nearest, open_one && error_x < 0.5);
@@ -140,19 +142,20 @@ void scatter(vec2 a, vec2 b, int k, float error_a, float error_b) {
   } while (++row < end);
   cut_off = cut_off || row < end;
 
-  // A silhouette that may pass the light's corner on either side, also along the left side: D is counted there.
+  // If a silhouette may pass the light's corner on either side, also along the left side, the pixel is open: D is
+  // counted at that corner.
   const float around = error_near + error_far, at_corner = clamp(near.x + (-0.5 - near.y) * slope, low.x, high.x);
   const bool holds_corner = all(lessThanEqual(low - around, vec2(-0.5))) && all(greaterThanEqual(high + around, vec2(-0.5)));
   if (holds_corner && !(abs(at_corner + 0.5) >= error_x)) open_pixel = true;
 
-  // Crossing of the left side. If rounding puts y on another side of a row, or of the corner, than that row's x, or
-  // at_corner, is of the left side, then these are within error_x of it, and that row, or the whole pixel, is open.
-  // (bound left)
+  // Crossing of the left side. If rounding puts y on the wrong side of a row (or of the corner), then that row's x (or
+  // at_corner) is within error_x of the left side, so that the row (or the whole pixel) is open. (bound left)
   if ((a.x < -0.5) != (b.x < -0.5)) {
     const float y = clamp(near.y + (-0.5 - near.x) * (direction.y / direction.x), low.y, high.y);
     if (y > -0.5 && y <= float(last_row)) {
       const int from = max(int(ceil(y)), first_row);
-      const int up = (a.x < b.x) ? k : -k;                // crossing it upwards, if it runs to the right: +k
+      const int up = (a.x < b.x) ? k : -k;                // change of the depth above the crossing: +k if the edge runs
+                                                          // to the right
       const uint band_row = uint(from - first_row);
       const int shift = int(band_row & 3) * 8;
       const uint old = left_changes[band_row >> 2];

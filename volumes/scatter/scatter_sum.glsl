@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts changes to depths, and depths to masks, for light samples in rows of a rectangle. Part of
-// scatter_edges.comp.
+// scatter_edges.comp. Bounds: docs/edge-scatter.md.
 
 uint words_per_mask() { return (push.columns + 7) / 8 * ((push.rows + 3) / 4); }
 uint mask_word(uint pixel, uint column_word, uint row_word) {
@@ -14,8 +14,8 @@ uint count_visible(uint pixel, uint depth_at_corner, bool on) {
   const uint first_word = uint(first_row) >> 2;
   uint cells = 0;
   for (uint word = 0; word < kWordsPerColumn; ++word) {
-    // Depths are in 0 … 127. Larger ones: 128 … 190, since no change exceeds 63. Negative ones, −63 … −1, are those of
-    // light samples that are open anyway.
+    // Valid depths are in 0 … 127. Since no change exceeds 63, a larger depth appears as 128 … 190. Negative depths,
+    // −63 … −1, are those of light samples that are open anyway.
     uint depths = 0, outside = 0;
     const uint changes = left_changes[word];
     for (int row = 0; row < 4; ++row) {

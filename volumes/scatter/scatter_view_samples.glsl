@@ -5,23 +5,24 @@ layout(constant_id = 2) const uint kGroupWidth = 4;       // pixels; the group's
 // Constants 3 and 4 are in scatter_rows.glsl and scatter_points.glsl.
 layout(constant_id = 5) const uint kHistogramWords = 64;  // words for each lane
 
-// An edge record (EdgeTexels), a texel buffer for each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor
-// 2).
+// Edge records (EdgeTexels), one texel buffer for each member: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
+// (anchor 2).
 layout(binding = 3) uniform usamplerBuffer record_a;
 layout(binding = 4) uniform usamplerBuffer record_b;
 layout(binding = 5) uniform usamplerBuffer record_n1;
 layout(binding = 6) uniform usamplerBuffer record_anchor1;
 layout(binding = 7) uniform usamplerBuffer record_n2;
 layout(binding = 8) uniform usamplerBuffer record_anchor2;
-// A triangle: (a, triangle), (b, plane), (c, light whose body it is).
+// Triangles, one texel buffer for each corner: (a, triangle), (b, plane), (c, light whose body the triangle belongs
+// to).
 layout(binding = 9) uniform usamplerBuffer corner_a;
 layout(binding = 10) uniform usamplerBuffer corner_b;
 layout(binding = 11) uniform usamplerBuffer corner_c;
 layout(scalar, binding = 12) buffer Masks { uint masks[]; };    // visible light samples
 layout(scalar, binding = 13) buffer Counts { uint counts[]; };  // visible light samples of a pixel
 
-// Some devices run a loop's body once even for zero iterations, and once more than a `for` requires: loops that count
-// are written do … while, with bodies that are harmless where there is nothing to do.
+// Some devices run a loop's body once even if there are zero iterations, and once more than a `for` requires. So loops
+// that count are written as do … while, with bodies that are harmless if there is nothing to do.
 
 shared uint histogram[kHistogramWords * kLanes];          // changes of depths, in bytes
 

@@ -169,7 +169,8 @@ void FusedVolume::fuse() {
     for (const Part& part : parts) {
       if (part.weight > 0) sum += part.weight * part.share[i].visible(options_.rule, part.whole[i]);
     }
-    visibility_[i] = weight > 0 ? static_cast<float>(std::clamp(sum / weight, 0.0, 1.0)) : 0.0F;  // a black texture
+    visibility_[i] = weight > 0 ? static_cast<float>(std::clamp(sum / weight, 0.0, 1.0)) : 0.0F;  // else the texture is
+                                                                                                  // black
   });
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Crow 1977, Heidmann 1991, Everitt and Kilgard 2002: V is 1 where no shadow volume of the light's centre is counted.
 // volume_count.cpp documents the count and its departures. ZP+ is S. Hornus, J. Hoberock, S. Lefebvre, J. Hart, ZP+:
-// correct z-pass stencil shadows, I3D 2005: there the counts on the near plane are drawn from the light; here the near
-// plane is at the eye, and the host computes the one count. volume_culling.cpp and shadow_tiles.cpp name the other
+// correct z-pass stencil shadows, I3D 2005. There the counts on the near plane are drawn from the light; here the near
+// plane is at the eye, and the host computes the only count. volume_culling.cpp and shadow_tiles.cpp name the other
 // variants' papers.
 
 #include "volumes/soft/methods.hpp"

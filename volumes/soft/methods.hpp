@@ -22,8 +22,8 @@ visibility::MethodDescription soft_volume_blend_description();
 
 /// Makes `soft-irregular` (Johnson et al. 2009): an irregular shadow map of the light's centre for the umbra, and the
 /// penumbra wedges of the centre's silhouettes drawn over view samples in a grid of the light's frustum, with signed
-/// areas by arc cosines. Planar lights; on the processor. V is that of `soft-volume` with umbra=layers, and as
-/// published, with umbra=map, wrong where one occluder is behind another. docs/soft-irregular.md.
+/// areas by arc cosines. Planar lights; on the processor. With umbra=layers, V is that of `soft-volume`; with
+/// umbra=map, as published, V is wrong where one occluder is behind another. docs/soft-irregular.md.
 std::unique_ptr<visibility::Method> make_soft_irregular(const visibility::MethodOptions& options);
 
 /// Makes `wedge-ramp` (Akenine-Möller and Assarsson 2002): a linear ramp across each penumbra wedge.

@@ -36,7 +36,8 @@ double OuterPenumbra::depth_at(const glm::dvec3& p, const glm::dvec3& normal, co
   };
   double r = 0, s = 0;
   const glm::dvec3 from = end(first, r), to = end(last, s), direction = to - from;
-  // Minimum of distance over radius along from + t direction, r + t (s − r): where its derivative is 0, or at an end.
+  // Minimises over t the length of from + t direction divided by the radius r + t (s − r). The minimum is where the
+  // derivative is 0, or at an end.
   const double square = glm::dot(direction, direction), slope = s - r;
   double nearest = 0;
   if (square > 0) {

@@ -5,8 +5,9 @@
 
 namespace penumbra::volumes {
 
-/// A spherical light around `center` that replaces any light; edges darken points within `radius` times their height
-/// over the receiver's plane, by the light's height over them, of their hard shadow (E. Haines 2001).
+/// A spherical light around `center` that replaces any light. Let h be an edge's height over the receiver's plane, and
+/// g the light's height over the edge: the edge darkens points within `radius` · h / g of its hard shadow (E. Haines
+/// 2001).
 struct OuterPenumbra {
   glm::dvec3 center{0};
   double radius = 0;
@@ -17,8 +18,8 @@ struct OuterPenumbra {
                                 const glm::dvec3& b) const;
 };
 
-/// Returns the hidden share of the light at this depth: 3 τ² − 2 τ³, for (1 + sin(π τ − π/2)) / 2 (S. Parker et al.
-/// 1998).
+/// Returns the hidden share of the light at this depth: 3 τ² − 2 τ³, in place of (1 + sin(π τ − π/2)) / 2 (S. Parker et
+/// al. 1998).
 inline double hidden_at(double depth) {
   return depth * depth * (3 - 2 * depth);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // E. Haines, Soft planar shadows using plateaus, Journal of Graphics Tools 6 (1), 2001; course notes, 5.3.1: the hard
 // shadow of the light's centre, darkened outward by disks at the silhouette's vertices and sheets between them, with
-// the sine of S. Parker et al. 1998. Departures: any receiver, each on its own plane, where the paper draws the disks
-// and sheets of one plane into its z-buffer; the nearest place of an edge is exact where the disks at its ends differ,
-// too (the paper's sheets are hyperbolic there); any planar light, by the disk of its area; any soup.
+// the sine of S. Parker et al. 1998. Departures: any receiver, each on its own plane (the paper draws the disks and
+// sheets of one plane into its z-buffer); the nearest place of an edge is exact even if the disks at its ends differ
+// (the paper's sheets are hyperbolic there); any planar light, by the disk of its area; any soup.
 
 #include "volumes/soft/methods.hpp"
 
@@ -71,8 +71,8 @@ class Plateaus final : public HardAndWedges {
   OuterPenumbra penumbra_;
 };
 
-/// A point within `radius` times those heights of an edge's projection sees the edge in front of a point within the
-/// radius of the light's centre: the wedges of the sphere's hull contain it.
+/// Returns a hull around the sphere. A point that an edge darkens (OuterPenumbra) sees the edge in front of a point
+/// within the radius of the light's centre, so the wedges of this hull contain it.
 LightHull hull_of(const OuterPenumbra& penumbra) {
   LightHull hull{{}, penumbra.center, penumbra.radius * 0.75, true};
   const double reach = penumbra.radius * (1 + 0x1p-20);

@@ -8,16 +8,17 @@
 #include "volumes/raster/wedge_raster.shared.h"
 #include "volumes/soft/plateaus.shared.h"
 
-// Depth of a view sample in the outer penumbra of one edge; the largest depth counts, as the highest plateau hides the
+// Depth of a view sample in the outer penumbra of one edge. The largest depth counts, as the highest plateau hides the
 // others (E. Haines 2001). Twin: OuterPenumbra::depth_at.
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
-                                                                           // both stages
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; both stages
+                                                                           // have the same descriptor set
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
-layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // the radius; a normal for each carrier, minus
-                                                                        // 1
+layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // the radius, then the carriers' normals;
+                                                                        // WedgeReceiver::counted is the carrier's index
+                                                                        // plus 1
 layout(scalar, push_constant) uniform Push { WedgePush push; };
 
 layout(location = 0) flat in vec3 face_a;

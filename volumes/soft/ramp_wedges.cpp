@@ -19,7 +19,8 @@ namespace penumbra::volumes {
 namespace {
 
 /// The cosine of the sharpest turn that is bisected: slightly more than a right angle. Silhouettes of fine meshes run
-/// back and forth; bisected, the wedges of edges that run back would lie on the other side, and not cancel.
+/// back and forth. If such sharp turns were bisected, the wedges of edges that run back would lie on the other side,
+/// and would not cancel.
 constexpr double kSharpest = -0.1;
 
 Plane plane_through(const glm::dvec3& at, const glm::dvec3& normal) {
@@ -31,8 +32,8 @@ double height(const Plane& plane, const glm::dvec3& p) {
   return glm::dot(plane.normal(), p) + plane.d;
 }
 
-/// Returns more than the rounding errors of front's and back's heights above p: products of numbers as large as |p| and
-/// |a|, of planes whose normals are off by a few units in the last place.
+/// Returns an upper bound of the rounding errors of p's heights over front and back: products of numbers as large as
+/// |p| and |a|, with planes whose normals are off by a few units in the last place.
 double height_error(const Wedge& wedge, const glm::vec3& p) {
   return 0x1p-45 * (glm::length(glm::dvec3(p)) + glm::length(wedge.a) + glm::length(wedge.b));
 }
@@ -77,9 +78,9 @@ class Builder {
     return n / (e.multiplicity > 0 ? length : -length);
   }
 
-  /// Returns the plane through the edge that touches the light from behind the edge, and bounds the wedge on the side
-  /// of (c, a, b) that `normal` points to: points beyond it see the light past the edge from its other side. Returns
-  /// nullopt if there is none.
+  /// Returns the plane through the edge that touches the light and has all of it behind. This plane bounds the wedge on
+  /// the side of (c, a, b) that `normal` points to: from points beyond it, the light appears past the edge, on the
+  /// edge's other side. Returns nullopt if there is no such plane.
   [[nodiscard]] std::optional<Plane> tangent(const Wedge& wedge, const glm::dvec3& normal) const {
     const glm::dvec3 away = 0.5 * (wedge.a + wedge.b) - center_;
     for (const glm::dvec3& touched : hull_.corners) {
@@ -147,7 +148,7 @@ double ramp_sum(const LightWedges& wedges, const visibility::Light& light, const
     if (std::ranges::any_of(at, [](double h) { return h < 0; })) continue;
     const VolumeEdge& edge = wedges.edges[i];
     const bool lit = visibility::edge_side(p, c, edge.a, edge.b, light) < 0;
-    // The wedge has no width on the edge, where front and back meet: the shadow is the hard one.
+    // On the edge, where front and back meet, the wedge has no width: the shadow is hard there.
     if (!(at[kFront] + at[kBack] > height_error(wedge, p))) continue;
     const double ramp = at[kFront] / (at[kFront] + at[kBack]);
     sum += edge.multiplicity * (lit ? ramp : ramp - 1);

@@ -27,8 +27,8 @@ namespace penumbra::volumes {
 enum RampPlane : std::size_t { kFront = 0, kBack = 1, kSideA = 2, kSideB = 3 };
 inline constexpr std::size_t kRampPlanes = 4;
 
-/// Returns a wedge for each edge; `empty` if the edge's line meets the light, so that no planes touch it: the shadow is
-/// hard there.
+/// Returns a wedge for each edge; it is `empty` if the edge's line meets the light, so that no plane through the edge
+/// touches the light: the shadow is hard there.
 LightWedges ramp_wedges_of(const LightVolumes& volumes, const visibility::Light& light);
 
 /// Returns the edges' contribution at p to the count at c: k times the ramp or, on the negative side, the ramp minus 1.

@@ -32,7 +32,7 @@ struct Form {
 };
 RepairRun run_of(const Form& form) {
   const bool joined = std::string(form.fusion) == "union";
-  // Tangents keep the digits of small angles, so that no part of the error is the arc's.
+  // arc=tangent keeps the digits of small angles, so that no part of the error is due to the arc cosine.
   return {"soft-irregular",
           {{"arc", "tangent"}, {"fusion", form.fusion}, {"silhouettes", form.silhouettes}, {"umbra", "layers"}},
           form.parts,
@@ -78,14 +78,14 @@ ErrorRepairs soft_volume_repairs(const MethodDescription& method, const MethodOp
   }
   if (fusion == "max" || fusion == "product" || fusion == "average") {
     ErrorRepair parted = visibility::parted_light(method, given);
-    for (RepairRun& run : parted.runs) {  // parts of the parts that it has
+    for (RepairRun& run : parted.runs) {  // divides the parts that the method already has
       run.light_parts *= parts;
       run.options.insert_or_assign("split", std::string(1, '1'));  // g++ 12 warns of "1"
     }
     repair_of(repairs, ErrorCause::view) = std::move(parted);
   }
   if (table || floats) {
-    // The method that repairs these has neither a table nor sides by floats: it would repair two causes at once.
+    // The run that repairs these has neither a table nor sides by floats, so it would repair two causes at once.
     const char* words = table ? "only with coverage=analytic: the repair has no table"
                               : "only with as=repaired and without votes: the repair decides sides by exact signs";
     repair_of(repairs, ErrorCause::view) = visibility::inseparable(ErrorCause::view, words);

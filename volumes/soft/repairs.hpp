@@ -8,9 +8,9 @@ namespace penumbra::visibility {
 struct MethodDescription;
 }  // namespace penumbra::visibility
 
-/// Runs without each cause of error of the methods of this room (MethodDescription::repairs; docs/error-budget.md).
-/// soft-irregular has options for what these methods share: layers at the light's centre (umbra), silhouettes of the
-/// centre, and sums. With umbra=layers its V is that of soft-volume.
+/// Runs that each avoid one cause of error of the methods in this folder (MethodDescription::repairs;
+/// docs/error-budget.md). soft-irregular has options for what these methods share: layers at the light's centre
+/// (umbra), silhouettes of the centre, and sums. With umbra=layers its V is that of soft-volume.
 namespace penumbra::volumes {
 
 visibility::ErrorRepairs soft_irregular_repairs(const visibility::MethodDescription& method,

@@ -5,9 +5,9 @@
 // frustum; for each view sample inside, the signed area that the edge covers is added, by an arc cosine.
 //
 // Departures (docs/soft-irregular.md). Cells of the grid are lists of light pixels without slices of depth: a wedge
-// skips lists that end before it. The umbra is decided by exact predicates, without bias. A view sample outside of the
-// frustum tests every edge. Polygons and textures, which have no arcs, are supported. Two options take the method's own
-// approximations away: silhouettes=receiver, fusion=union.
+// skips lists that end in front of it. The umbra is decided by exact predicates, without bias. A view sample outside of
+// the frustum tests every edge. Polygons and textures, which have no arcs, are supported. Two options remove the
+// method's own approximations: silhouettes=receiver, fusion=union.
 
 #include "volumes/soft/methods.hpp"
 
@@ -37,7 +37,8 @@ namespace penumbra::volumes {
 namespace {
 
 constexpr double kPerLightPixel = 2;            ///< average number of view samples
-constexpr std::size_t kMostPixels = 1U << 18U;  ///< of a tile: each pixel has a projection and a list of edges
+constexpr std::size_t kMostPixels = 1U << 18U;  ///< most pixels of a tile, each of which has a projection and a list of
+                                                ///< edges
 
 enum class Umbra : std::uint8_t { map, layers };
 constexpr visibility::ChoiceOption kUmbra{"umbra",
@@ -96,7 +97,7 @@ struct Receiver {
   std::uint32_t pixel = 0;  ///< pixel of the tile
   LitPoint at;
   LightProjection projection;
-  std::optional<std::int32_t> layers = {};             ///< at the light's centre; nullopt: not in the map
+  std::optional<std::int32_t> layers = {};             ///< layers at the light's centre; nullopt: p is not in the map
   std::vector<SoftVisibility::Silhouette> edges = {};  ///< edges that may appear on the light, ascending
   bool tries_all = false;
 };
@@ -126,7 +127,7 @@ class SoftIrregular final : public visibility::Method {
     casters_ = casters_of(*scene_, light);
     seen_.emplace(*scene_, light, casters_, arc_);
     box_ = pairs::make_light_box(light);
-    for (const glm::vec3& corner : light.outline) {  // beyond the light's samples
+    for (const glm::vec3& corner : light.outline) {  // the outline may extend beyond the light's samples
       const glm::dvec2 at(box_.place(glm::dvec3(corner)));
       box_.lower = glm::min(box_.lower, at);
       box_.upper = glm::max(box_.upper, at);
@@ -153,7 +154,7 @@ class SoftIrregular final : public visibility::Method {
   void draw_umbra(std::vector<Receiver>& receivers);
   void draw_wedges(std::vector<Receiver>& receivers);
   void resolve(const std::vector<Receiver>& receivers);
-  /// Returns frusta on the emitting sides of the light.
+  /// Returns the frusta on the emitting sides of the light.
   [[nodiscard]] std::vector<pairs::FarPlane> planes(const pairs::LightBox& box,
                                                     const std::vector<Receiver>& receivers) const;
   template <typename Stage>
@@ -191,7 +192,8 @@ void SoftIrregular::evaluate(const visibility::Tile& tile) {
   timed("areas", [&] { resolve(receivers); });
 }
 
-/// Returns the receivers; all other pixels are bright, dark where the light does not emit, or not wanted: not a number.
+/// Returns the receivers. All other pixels get V = 1; or 0 where the light does not emit; or, if not wanted, not a
+/// number.
 std::vector<Receiver> SoftIrregular::receivers_of(const visibility::Tile& tile) {
   const std::size_t first = std::size_t{tile.first_row} * samples_->width;
   visibility_.assign(std::size_t{tile.row_count} * samples_->width, 1);
@@ -230,7 +232,7 @@ std::vector<pairs::FarPlane> SoftIrregular::planes(const pairs::LightBox& box,
   return planes;
 }
 
-/// Draws Aila and Laine's lists: the footprint of a triangle as the light's centre sees it.
+/// Draws each triangle's footprint, as seen from the light's centre, over Aila and Laine's lists of view samples.
 void SoftIrregular::draw_umbra(std::vector<Receiver>& receivers) {
   pairs::LightBox center = box_;
   center.origin = glm::dvec3(visibility::center_of(*light_));

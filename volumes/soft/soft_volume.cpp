@@ -114,7 +114,7 @@ struct CountedPart {
   explicit CountedPart(const render::Device& device) : count(device, CountVariant::z_fail, Layers::one_a_solid) {}
 
   VolumeCount count;
-  std::vector<VolumeCount> voters;  // of other points; empty: only the centre decides
+  std::vector<VolumeCount> voters;  // counts at other points; empty: only the centre decides
   Light light;
   LightOutline outline;
   std::optional<TextureWeights> texture;
@@ -325,8 +325,8 @@ void SoftVolume::add(CountedPart& part) {
   });
 }
 
-/// Returns the layers at the light's centre by majority of three points: each by its own count, minus the layers
-/// between.
+/// Returns the layers at the light's centre by majority of three points. Each point votes with its own count minus the
+/// layers between it and the centre.
 std::vector<std::int64_t> SoftVolume::layers_by_vote(CountedPart& part) {
   using Kind = VolumeCount::Kind;
   const std::span<const Kind> kinds = part.count.kinds();

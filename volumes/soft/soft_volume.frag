@@ -9,22 +9,22 @@
 #include "volumes/raster/wedge_raster.shared.h"
 #include "volumes/raster/determinant.glsl"
 
-// Contribution of one silhouette edge to the part of the light that is hidden from p. Outside the edge's penumbra
-// nothing of the edge remains after clipping by the light: no plane of the wedge is tested again.
+// Contribution of one silhouette edge to the part of the light that is hidden from p. Outside of the edge's penumbra
+// nothing of the edge remains after clipping by the light, so no plane of the wedge is tested.
 
 layout(constant_id = 0) const uint kShape = 0;
 layout(constant_id = 1) const uint kMeasure = 0;
-// The side of the light's centre on which an edge passes: 0: exact; 1: as rounded by floats; 2: so, and the layers
-// between the centre and the voters.
+// How the side of the light's centre on which an edge passes is decided: 0: exactly; 1: by rounded floats; 2: by
+// rounded floats, and the layers between the centre and the voters are added up, too.
 layout(constant_id = 2) const uint kSides = 0;
 const bool kRounded = kSides != 0, kVote = kSides == 2;
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
-                                                                           // both stages
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; both stages
+                                                                           // have the same descriptor set
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
-layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // data of kMeasure
+layout(scalar, binding = 4) readonly buffer Table { double table[]; };  // data for kMeasure
 layout(scalar, push_constant) uniform Push { WedgePush push; };
 
 layout(location = 0) flat in vec3 face_a;
@@ -42,28 +42,29 @@ double share_of(Cone cone, dvec2 q0, dvec2 q1) {
   if (kMeasure == kTable) {
     const bool disk = kShape == kDisk;
     const TablePoint from = disk ? disk_point(q0) : square_point(q0), to = disk ? disk_point(q1) : square_point(q1);
-    // The table's cones do not wind around the centre; this one winds like the edge itself.
+    // The table's cones do not wind around the centre; this adds the windings of the edge itself.
     const double round_trips = round((cone.sector - (to.fan - from.fan)) / whole);
     return table[from.index * uint(kTableSide * kTableSide) + to.index] + round_trips;
   }
   if (kMeasure == kTexture) {
     const uvec2 texels = uvec2(push.texels & 0xffffu, push.texels >> 16);
     const double round_trips = round((cone.sector - (cone.to - cone.from)) / whole);
-    // The segments from both ends to the rim are omitted: neighbours have them, too, in the opposite direction.
+    // The segments from both ends to the rim are omitted: the neighbouring edges have them in the opposite direction.
     return weight_of_fan(cone.to, texels) - weight_of_fan(cone.from, texels) + round_trips -
            weight_left_of(q0, q1, texels);
   }
   return (cone.sector - cone.triangle) / whole;
 }
 
-/// Returns the side of the plane (c, a, b) that p is on, in float, as a fragment of 2003 decides it.
+/// Returns the side of the plane (c, a, b) that p is on, in float, as a fragment shader of 2003 would decide it.
 int rounded_turn_of(dvec3 a, dvec3 b, dvec3 p, Foot foot) {
   const vec3 A = vec3(a - push.c), B = vec3(b - push.c), P = vec3(p - push.c);
   return dot(cross(A, B), P) < 0.0 ? -facing_of(foot) : facing_of(foot);
 }
 
-/// Returns the change of the number of layers at this edge on the segment from the centre to a voter, q; the edge turns
-/// around the centre by `turn`. Half open, so that the segment passes a vertex on one side of it.
+/// Returns by how much the number of layers changes at this edge on the segment from the centre to a voter, q; the edge
+/// turns around the centre by `turn`. The tests are half open, so that the segment passes each vertex on one definite
+/// side.
 int layers_between(Segment cut, int turn, dvec2 q) {
   const dvec2 from = cut.from.xy - q * cut.from.z, to = cut.to.xy - q * cut.to.z;
   const int turn_at_q = from.x * to.y - from.y * to.x < 0.0LF ? -1 : 1;

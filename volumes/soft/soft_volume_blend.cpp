@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // V. Forest, L. Barthe, M. Paulin, Realistic soft shadows by penumbra-wedges blending, Graphics Hardware 2006: four
-// quarters of the light at once, their common corner is the point from which silhouettes are seen, and in each quarter
-// a box around the covered part reduces the contributions of further occluders. Departures: an occluder is an object of
-// the scene, and occluders are processed in the scene's order, so the result does not depend on the order of triangles;
-// boxes include covered corners of the light, too.
+// quarters of the light are evaluated at once; their common corner is the point from which silhouettes are seen; and in
+// each quarter a box around the covered part reduces the contributions of further occluders. Departures: an occluder is
+// an object of the scene, and occluders are processed in the scene's order, so the result does not depend on the order
+// of triangles; boxes include covered corners of the light, too.
 
 #include "volumes/soft/methods.hpp"
 
@@ -31,7 +31,7 @@ using visibility::SceneFloats;
 using visibility::Tile;
 using visibility::ViewSamples;
 
-constexpr std::size_t kMostOccluders = 32;  // each has its own passes; further objects share the last
+constexpr std::size_t kMostOccluders = 32;  // each has its own passes; further objects share those of the last one
 
 constexpr auto kBlendWedges =
     wedges_option("processor that builds silhouettes and wedges for each light, object by object");
@@ -97,7 +97,7 @@ Cover cover_of(std::span<const std::int64_t> words, std::uint32_t quarter, std::
     grow(1 - number(at + 1), 1 - number(at + 2));
     grow(number(at + 3), number(at + 4));
   }
-  // The light's points around the quarter, mirrored into [0, 1]²: along u, across, along v.
+  // The points of the light at the quarter's other corners which, mirrored into [0, 1]², are (1, 0), (1, 1) and (0, 1).
   constexpr std::array<std::array<std::uint32_t, 3>, 4> kAround{{{0, 1, 2}, {4, 3, 2}, {0, 7, 6}, {4, 5, 6}}};
   const auto covered = [&](std::uint32_t point) { return count + words[gpu::kPointWord + point] > 0; };
   if (count > 0) grow(0, 0);

@@ -11,11 +11,12 @@
 #include "volumes/raster/determinant.glsl"
 #include "volumes/wedges/radial_coverage.glsl"
 
-// Contribution of one silhouette edge of one occluder to each quarter of a rectangle light, with the box of its piece
-// there (V. Forest, L. Barthe, M. Paulin 2006). The quarters' common corner is the centre, so one count serves all.
+// Contribution of one silhouette edge of one occluder to each quarter of a rectangle light, with the box of the edge's
+// piece there (V. Forest, L. Barthe, M. Paulin 2006). The quarters' common corner is the centre, so one count serves
+// all.
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
-                                                                           // both stages
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; both stages
+                                                                           // have the same descriptor set
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
@@ -29,7 +30,7 @@ layout(location = 2) flat in int face_weight;
 
 int64_t fixed_point(double x) { return int64_t(round(x / kSumUnit)); }
 
-/// Returns the fan of the quarter [0, 1]² from the centre between (1, 0) and q.
+/// Returns the area of the quarter [0, 1]² between the directions (1, 0) and q, as seen from the centre (0, 0).
 double quarter_fan(dvec2 q) { return q.y <= q.x ? 0.5LF * q.y / q.x : 1.0LF - 0.5LF * q.x / q.y; }
 
 void add_to_quarter(uint quarter, uint slot, Segment cut, int weight) {
@@ -51,8 +52,8 @@ void add_to_quarter(uint quarter, uint slot, Segment cut, int weight) {
   atomicMax(sums[at + 4], fixed_point(upper.y));
 }
 
-/// Adds the edge q0 q1 to a point if the segment from the centre to the point crosses it. A segment through an end
-/// counts with one of two edges.
+/// Adds the edge q0 q1 to a point if the segment from the centre to the point crosses it. If the segment passes through
+/// an end where two edges meet, one of the two counts.
 void add_to_point(uint point, uint slot, dvec2 q0, dvec2 q1, int weight) {
   const dvec2 to[8] = dvec2[](dvec2(1, 0), dvec2(1, 1), dvec2(0, 1), dvec2(-1, 1), dvec2(-1, 0), dvec2(-1, -1),
                               dvec2(0, -1), dvec2(1, -1));

@@ -10,8 +10,8 @@ using uint = std::uint32_t;
 /// Words of each quarter q (bit 0: u < 0, bit 1: v < 0): its share; then 1 − the lower ends and the upper ends of the
 /// box around its edges, so that 0 means empty. Shares and ends in units of kSumUnit.
 const uint kQuarterWords = 5;
-/// First word of the changes of the count by crossed edges between the centre and the points around it, at 45° each
-/// from (1, 0) on.
+/// First word of the changes of the count between the centre and the points around it, at the edges crossed on the way.
+/// The points are 45° apart, beginning at (1, 0).
 const uint kPointWord = 4 * kQuarterWords;
 const uint kPoints = 8;
 const uint kBlendWords = kPointWord + kPoints;

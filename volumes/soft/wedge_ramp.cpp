@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // T. Akenine-Möller, U. Assarsson, Approximate soft shadows on arbitrary surfaces using penumbra wedges, EGWR 2002:
-// hard shadow volumes of the light's centre, and between the front and back plane of a wedge for each edge, instead of
-// the hard step, light that falls linearly. Departures: any soup and rectangle, disk and ellipse lights, not a sphere;
+// hard shadow volumes of the light's centre; for each edge, light that falls linearly between the front and the back
+// plane of a wedge replaces the hard step. Departures: any soup; rectangle, disk and ellipse lights, not a sphere;
 // integer sums.
 
 #include "volumes/soft/methods.hpp"

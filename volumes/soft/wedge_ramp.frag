@@ -12,8 +12,8 @@
 // A linear ramp between the front and the back plane of a wedge, instead of the count's step at its edge (T.
 // Akenine-Möller, U. Assarsson 2002). Twin: ramp_sum.
 
-layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; one set for
-                                                                           // both stages
+layout(scalar, binding = 0) readonly buffer Faces { WedgeFace faces[]; };  // used by the vertex shader; both stages
+                                                                           // have the same descriptor set
 layout(scalar, binding = 1) readonly buffer Receivers { WedgeReceiver receivers[]; };
 layout(scalar, binding = 2) buffer Sums { int64_t sums[]; };
 layout(scalar, binding = 3) writeonly buffer Doubts { uint doubts[]; };
@@ -25,7 +25,7 @@ layout(location = 1) flat in vec3 face_b;
 layout(location = 2) flat in int face_weight;
 layout(location = 3) flat in uint face_number;
 
-/// Returns the height in the host's order of operations, so that both see p on the same side.
+/// Returns the height, computed in the host's order of operations, so that both see p on the same side.
 double height(uint plane, dvec3 p) {
   const uint at = 16 * face_number + 4 * plane;
   precise const double h = planes[at] * p.x + planes[at + 1] * p.y + planes[at + 2] * p.z + planes[at + 3];
@@ -41,7 +41,8 @@ void main() {
   const double front = height(0, p), back = height(1, p);
   if (front < 0.0LF || back < 0.0LF || height(2, p) < 0.0LF || height(3, p) < 0.0LF) return;
   const Value side = det(dvec3(face_a) - push.c, dvec3(face_b) - push.c, p - push.c);
-  // The host decides about p on the edge, or within height_error() of the twin.
+  // The host decides if p is on the plane of the edge, or if the wedge's width at p is within the twin's
+  // height_error().
   const double reach = double(abs(receiver.p.x) + abs(receiver.p.y) + abs(receiver.p.z)) +
                        double(abs(face_a.x) + abs(face_a.y) + abs(face_a.z)) +
                        double(abs(face_b.x) + abs(face_b.y) + abs(face_b.z));

@@ -21,7 +21,7 @@ struct CoveragePoint {
   LitPoint sample;
   double center = 0, receiver = 0;  ///< `blocked` from the silhouettes of the centre and of the receiver
   double layers = 0;                ///< `blocked` of the receiver, summed triangle by triangle (layer_areas.hpp)
-  double overlap = 0;               ///< overlap of the layers; beyond `kMostOverlap` the summation stopped
+  double overlap = 0;               ///< overlap of the layers; the summation stopped once it was beyond `kMostOverlap`
   double tolerance = kCoverageTolerance;
   bool touches_light = false;  ///< a caster meets the light itself: no check applies to this sample
 
@@ -31,8 +31,8 @@ inline constexpr double kMostOverlap = 4;
 
 /// Checks the invariant `coverage` (f): the receiver's silhouettes add up to its layers, to kCoverageTolerance, at each
 /// sample; samples must be in front of the light (asserted). The difference of the centre's sum is only reported. Runs
-/// in parallel; violations are added in the order of samples. A sphere is at each sample the disk visible from there.
-/// For a textured light areas are weights, and the tolerance grows by the ratio of the brightest texel to the mean.
+/// in parallel; violations are added in the order of samples. At each sample, a sphere is the disk visible from there.
+/// For a textured light, areas are weights, and the tolerance grows by the ratio of the brightest texel to the mean.
 std::vector<CoveragePoint> check_coverage(const SoftVisibility& soft, const visibility::Light& light,
                                           std::span<const LitPoint> samples, ValidationReport& report);
 

@@ -41,8 +41,8 @@ Polygon polygon_around(const LightOutline& outline) {
   return outline.corners.empty() ? Polygon{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}} : outline.corners;
 }
 
-/// Returns the signed area of the unit disk within the triangle (0, a, b): along the chord where the edge is inside,
-/// along the arc where the edge is outside.
+/// Returns the signed area of the unit disk within the triangle (0, a, b): under the chord where the edge is inside,
+/// and under the arc where the edge is outside.
 double disk_triangle(const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 d = b - a;
   const auto arc = [](const glm::dvec2& from, const glm::dvec2& to) {
@@ -86,7 +86,7 @@ Polygon common_part(Polygon one, const Polygon& other) {
 double distance_to(const std::array<glm::dvec3, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   const glm::dvec3 n = glm::cross(b - a, c - a);
-  bool within = glm::dot(n, n) > 0;  // the nearest point of the plane is within the triangle
+  bool within = glm::dot(n, n) > 0;  // whether the nearest point of the plane is within the triangle
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &from = triangle[i], direction = triangle[(i + 1) % 3] - from;
@@ -98,7 +98,7 @@ double distance_to(const std::array<glm::dvec3, 3>& triangle) {
   return within ? std::min(nearest, std::abs(glm::dot(n, a)) / glm::length(n)) : nearest;
 }
 
-constexpr double kHair = 0x1p-20;  ///< fraction of the light: far above rounding, far below what is visible
+constexpr double kHair = 0x1p-20;  ///< a fraction of the light: far above rounding, far below what is visible
 
 struct Bounds {
   glm::dvec2 lower, upper;

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-/// Areas that triangles hide of a light, each triangle by itself: no edge graph, no multiplicity, no reference point.
+/// Areas of a light that triangles hide, each triangle on its own: no edge graph, no multiplicity, no reference point.
 /// Reference values for the sums over silhouettes.
 namespace penumbra::volumes {
 
@@ -22,9 +22,9 @@ namespace penumbra::volumes {
 std::vector<std::vector<glm::dvec2>> projected_layers(const visibility::Light& light, const glm::vec3& p,
                                                       std::span<const std::array<glm::vec3, 3>> triangles);
 
-/// Returns whether the triangle meets the light itself (a disk: the square around it; a sphere: the ball). There the
-/// triangle's shadow ends at none of its edges. Exact for triangles that do not meet a planar light's plane; for the
-/// others true slightly too often.
+/// Returns whether the triangle meets the light itself (a disk: the square around it; a sphere: the ball). At the
+/// light, the triangle's shadow ends at none of its edges. Exact for triangles that do not meet a planar light's plane;
+/// for the others true slightly too often.
 bool touches_light(const visibility::Light& light, const std::array<glm::vec3, 3>& triangle);
 
 /// Returns Σ of the polygons' areas within the light, as a fraction of |L|: the mean number of layers. With `texture`,

@@ -39,11 +39,12 @@ LightHull round_hull(const visibility::Light& light, std::uint32_t sides) {
   return hull;
 }
 
-/// Returns an icosahedron with the sphere inscribed: the distance of its faces is 0.7947 of the distance of its
+/// Returns an icosahedron in which the sphere is inscribed: the distance of its faces is 0.7947 of the distance of its
 /// corners.
 LightHull sphere_hull(const visibility::Light& light) {
   const double golden = std::numbers::phi;
-  const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);  // edge 2
+  // The radii of an icosahedron with edges of length 2.
+  const double inradius = golden * golden / std::sqrt(3.0), circumradius = std::sqrt(golden * golden + 1);
   const double scale = light.radius * (1 + margin_of(light, light.radius)) / inradius;
   LightHull hull{{}, glm::dvec3(light.center), circumradius * scale - light.radius, true};
   for (const double one : {-1.0, 1.0}) {

@@ -58,7 +58,7 @@ std::vector<glm::dvec3> extreme_rays(const EdgeAndLight& cast, const glm::dvec3&
   std::ranges::sort(rays,
                     [](const Ray& a, const Ray& b) { return a.at.x != b.at.x ? a.at.x < b.at.x : a.at.y < b.at.y; });
   // Andrew's monotone chain: the lower half from left to right, then the upper half from right to left. Rounding may
-  // keep a ray that is not quite extreme or lose one that is barely extreme: bounding_plane corrects or drops the
+  // keep a ray that is not quite extreme, or lose one that is barely extreme: bounding_plane corrects or drops the
   // resulting plane.
   std::vector<Ray> hull;
   const auto extend = [&](const Ray& ray, std::size_t floor) {
@@ -76,10 +76,10 @@ std::vector<glm::dvec3> extreme_rays(const EdgeAndLight& cast, const glm::dvec3&
   return extreme;
 }
 
-/// Returns the facets of the convex hull of the penumbra, e + C with C the cone of all x − l. Their normals are the
-/// extreme rays of C's dual (the normals of C's facets) where these stay extreme for the sum: each touches e at one
-/// end; and, where two neighbours touch different ends, the direction between the two at right angles to e, which
-/// touches all of e.
+/// Returns the facets of the convex hull of the penumbra, e + C with C the cone of all x − l. The normals of C's facets
+/// (the extreme rays of C's dual) are normals of the hull where they stay extreme for the sum; each such facet touches
+/// e at one end. Where two neighbouring facets touch different ends, there is one more between them: its normal is at
+/// right angles to e, and it touches all of e.
 std::vector<Plane> tight_planes(const EdgeAndLight& cast, const glm::dvec3& m) {
   const std::vector<glm::dvec3> rays = extreme_rays(cast, m);
   const std::size_t count = rays.size();
@@ -104,8 +104,8 @@ std::vector<Plane> tight_planes(const EdgeAndLight& cast, const glm::dvec3& m) {
 
 // ---- original
 
-/// Returns the normal of the plane through `at` along `direction` and through a corner of the light, with the whole
-/// light on the plane's negative side: the corner that leaves no other corner beyond. The sign of `turn` selects one of
+/// Returns the normal of the plane that contains `at`, `direction` and a corner of the light, and has the whole light
+/// on its negative side: the corner is the one that leaves no other corner beyond. The sign of `turn` selects one of
 /// the two tangents.
 std::optional<glm::dvec3> tangent_normal(const glm::dvec3& at, const glm::dvec3& direction,
                                          std::span<const glm::dvec3> light, double turn) {

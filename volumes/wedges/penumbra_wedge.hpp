@@ -44,8 +44,8 @@ struct Wedge {
 
 struct WedgeEdge {
   glm::dvec3 a{0}, b{0};
-  /// Half-spaces that the caller proved to contain the requested points, beside the penumbra: the planes of adjacent
-  /// triangles (Lehtinen et al. 2006). Added to every wedge of the edge.
+  /// Half-spaces, other than those of the penumbra, that the caller proved to contain the requested points: the planes
+  /// of adjacent triangles (Lehtinen et al. 2006). Added to every wedge of the edge.
   std::vector<Plane> crop;
 };
 

@@ -45,9 +45,9 @@ struct Range {
   }
 };
 
-/// Returns the part within the disk of an edge already clipped to the square around the disk. Computed on the light's
-/// plane, not before projection: where an edge passes p closely, X² + Y² ≤ W² would be decided by the squares of small
-/// differences.
+/// Returns the part within the disk of an edge already clipped to the square around the disk. It is computed on the
+/// light's plane, not before projection: for an edge that passes close to p, X² + Y² ≤ W² would be decided by the
+/// squares of small differences.
 std::optional<ClippedEdge> cut_by_disk(const ClippedEdge& edge) {
   const glm::dvec2 toward = edge.to - edge.from;
   const double size = glm::dot(toward, toward), half = glm::dot(edge.from, toward),
@@ -137,12 +137,13 @@ LightProjection::LightProjection(const visibility::Light& light, const glm::vec3
   const auto [center, u, v] = visibility::light_frame_from(light, p);
   const glm::dvec3 r = p_ - center, n = glm::cross(u, v);
   double k = glm::dot(n, r);
-  // so near the plane that double precision cannot resolve K
+  // p is so near the plane that double precision cannot resolve K
   if (k * turn_ <= 0) k = turn_ * std::numeric_limits<double>::min();
   row_x_ = glm::cross(v, r) / k;
   row_y_ = glm::cross(r, u) / k;
   row_w_ = -n / k;
-  // 2⁻⁴⁹ = 16 · 2⁻⁵³: a difference, another, a product, a difference, a quotient; a difference, a product, two sums.
+  // 16 · 2⁻⁵³ = 2⁻⁴⁹ covers a difference, another, a product, a difference, a quotient; a difference, a product, two
+  // sums.
   const double rounding = 0x1p-49 / std::abs(k);
   size_x_ = rounding * cross_size(v, r);
   size_y_ = rounding * cross_size(r, u);
@@ -195,10 +196,11 @@ RadialCoverage::RadialCoverage(const LightOutline& outline, const glm::dvec2& re
   }
 }
 
-/// Returns the area that a ray from C has swept when the ray points in `direction`, up to multiples of |L|.
+/// Returns the area swept, up to multiples of |L|, when a ray from C has turned to `direction`.
 double RadialCoverage::fan_area(const glm::dvec2& direction) const {
   if (outline_->corners.empty()) {
-    // The ray leaves at h; Green's theorem along the arc: ½ ∮ (q − C) × dq = ½ φ − ½ C × h, up to a constant.
+    // h: point where the ray leaves the disk. Green's theorem along the arc: ½ ∮ (q − C) × dq = ½ φ − ½ C × h, up to a
+    // constant.
     const glm::dvec2 d = direction / glm::length(direction);
     const double along = glm::dot(reference_, d), across = cross2(reference_, d);
     const glm::dvec2 h = reference_ + (std::sqrt(std::max(0.0, 1 - across * across)) - along) * d;
@@ -230,8 +232,8 @@ double RadialCoverage::beyond(const ClippedEdge& edge, int side) const {
   }
   double sector = fan_area(to) - fan_area(from);
   if (glm::dot(from, to) > 0) {
-    // Less than a quarter turn: rounding may have reversed the sector's sign, but its magnitude is right. No quarter
-    // turn around a point well inside holds 15/16 of a convex region; and no rounding reaches 1/16.
+    // Less than a quarter turn: rounding may have reversed the sector's sign, but its magnitude is right. A quarter
+    // turn around a point well inside never contains 15/16 of a convex region, and no rounding reaches 1/16.
     if (sector < (turned > 0 ? -area / 16 : -area * 15 / 16)) sector += area;
     if (sector > (turned < 0 ? area / 16 : area * 15 / 16)) sector -= area;
   } else {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes the part of a light that one edge takes or gives back as seen from p (U. Assarsson, T. Akenine-Möller 2003):
-// the cone from the light's centre over the edge's projection, cut by the light, less the triangle within; derived in
-// docs/coverage.md. The light is [−1, 1]² or the unit disk in its own coordinates, with centre (0, 0).
+// the cone from the light's centre over the edge's projection, cut by the light, minus the triangle between centre and
+// edge. docs/coverage.md derives it. The light is [−1, 1]² or the unit disk in its own coordinates, with centre (0, 0).
 //
 // (X, Y) / W is the projection of a point to the light; W is the point's height above p, relative to the light's.
 
-/// Threshold below which the sign of a rounded quantity is doubtful: relative to the terms that X and Y are sums of, 2⁸
+/// Threshold below which the sign of a rounded quantity is doubtful, relative to the terms that X and Y are sums of: 2⁸
 /// times their error. Trusted directions are therefore off by less than 2⁻⁸.
 const double kNearCenter = 1.0 / 1099511627776.0;  // 2⁻⁴⁰
 
@@ -31,8 +31,8 @@ double angle_of(double y, double x) {
   return y < 0.0LF ? -angle : angle;
 }
 
-/// Returns the area of the square's fan from the centre between the direction (1, 0) and (x, y). Eight halves of 1/2
-/// each.
+/// Returns the area of the square's fan from the centre, from direction (1, 0) to (x, y). Eight right triangles of area
+/// 1/2 make up the square.
 double square_fan(double y, double x) {
   const bool steep = abs(y) > abs(x);
   const double rest = (steep ? -x : y) / (steep ? y : x);
@@ -64,8 +64,8 @@ Segment cut_by_square(dvec3 a, dvec3 b) {
   return Segment(first > 0.0LF ? a + (b - a) * first : a, last < 1.0LF ? a + (b - a) * last : b, first < last);
 }
 
-/// Returns the part of the edge where X² + Y² ≤ W² with W ≥ 0: between the roots of a quadratic, or beyond the roots on
-/// the cone's own side.
+/// Returns the part of the edge where X² + Y² ≤ W² with W ≥ 0: between the roots of a quadratic, or beyond them on the
+/// side of the cone with W ≥ 0.
 Segment cut_by_disk(dvec3 a, dvec3 b) {
   double first = 0.0LF, last = 1.0LF;
   cut_range(a.z, b.z, first, last);
@@ -94,10 +94,10 @@ const int kNoTurn = 2;  // within rounding
 
 /// Area of the cone from the centre over a clipped edge.
 struct Cone {
-  double from, to;  // fans of both ends on the square, in [−1/2, 7/2]
-  double sector;    // area of the sector within the light, counter-clockwise positive: to − from, possibly ± the whole
-                    // light
-  double triangle;  // area of the triangle before the edge, with the same sign
+  double from, to;  // areas of the square's fan up to either end, in [−1/2, 7/2]
+  double sector;    // area of the sector within the light, counter-clockwise positive: to − from, if necessary ± the
+                    // whole light
+  double triangle;  // area of the triangle between the centre and the edge, with the same sign
   bool doubtful;
 };
 
@@ -118,7 +118,7 @@ Cone cone_of(Segment cut, int turn, double size, bool disk) {
     cone.sector = cone.to - cone.from;
     cone.sector += cone.sector > 2.0LF ? -4.0LF : cone.sector < -2.0LF ? 4.0LF : 0.0LF;
   }
-  // Nearly half a turn: the count at c also depends on the direction of the turn, and one sign must decide both.
+  // Nearly half a turn: the count at c also depends on the direction of the turn, so one sign must decide both.
   if (along < 0.0LF && double(turn) * cone.sector < 0.0LF) cone.sector += 2.0LF * half_light * double(turn);
   cone.triangle = 0.5LF * across / weight;
   cone.doubtful = at_center || (along < 0.0LF && turn == kNoTurn) || !(weight > 0.0LF);

@@ -45,11 +45,12 @@ class LightProjection {
   LightProjection(const visibility::Light& light, const glm::vec3& p);
 
   [[nodiscard]] Projected operator()(const glm::dvec3& x) const;
-  /// Returns true if certainly no point of the edge appears in the interior of the box [lower, upper] around a light. A
-  /// third of the work of a projection.
+  /// Returns true if certainly no point of the edge appears in the interior of the box [lower, upper] around a light.
+  /// Takes a third of the work of a projection.
   [[nodiscard]] bool misses(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec2& lower,
                             const glm::dvec2& upper) const;
-  /// Returns +1 if counter-clockwise as seen from p is counter-clockwise in (s, t); −1 if p is behind the light. Exact.
+  /// Returns +1 if a turn that p sees counter-clockwise is counter-clockwise in (s, t); −1 if p is behind the light.
+  /// Exact.
   [[nodiscard]] int turn() const { return turn_; }
 
  private:
@@ -62,8 +63,8 @@ struct ClippedEdge {
   glm::dvec2 from{0}, to{0};
   double from_error = 0, to_error = 0;
 };
-/// Returns nullopt if the clipped edge is a point or empty. An end inside the light is the vertex's own point: edges
-/// that share a vertex share the numbers.
+/// Returns nullopt if the clipped edge is a point or empty. An end inside the light is the vertex's own projection, so
+/// edges that share a vertex have the same numbers there.
 std::optional<ClippedEdge> clip_to_light(const LightOutline& outline, const Projected& a, const Projected& b);
 
 /// Method of computing the angle of a disk's sector.
@@ -79,9 +80,9 @@ class RadialCoverage {
   RadialCoverage(const LightOutline& outline, const glm::dvec2& reference, Arc arc = Arc::tangent);
 
   /// Returns ∫_L [the segment C→l crosses the edge] dl, times the sign of the turn from→to around C: the sector of L
-  /// over the edge less the triangle (C, from, to). `side` is the exact sign of the turn: where the sector is near half
-  /// a turn, rounding must not decide. The error is a few units in the last place of |L|, plus the effect of the ends'
-  /// errors: see docs/coverage.md.
+  /// over the edge minus the triangle (C, from, to). `side` is the exact sign of the turn, since rounding must not
+  /// decide where the sector is near half a turn. The error is a few units in the last place of |L|, plus the effect of
+  /// the ends' errors: see docs/coverage.md.
   [[nodiscard]] double beyond(const ClippedEdge& edge, int side) const;
 
   /// Returns whether `beyond` can trust the direction of an end: false if `end` lies within four times `error` of C.
@@ -93,7 +94,7 @@ class RadialCoverage {
   const LightOutline* outline_;
   glm::dvec2 reference_;
   bool by_cosine_;
-  std::vector<double> up_to_;  // area of the fan triangles (C, corner i, corner i + 1) before i
+  std::vector<double> up_to_;  // for each i: area of the fan's triangles (C, corner j, corner j + 1) with j < i
 };
 
 }  // namespace penumbra::volumes

@@ -88,12 +88,12 @@ bool SoftVisibility::is_left_out(std::uint32_t caster, const LitPoint& sample) c
   return mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p) == Side::on;
 }
 
-/// Returns the rule of keep_one_layer for one triangle.
+/// Returns whether one triangle counts, by the rule of keep_one_layer.
 bool SoftVisibility::counts_for_receiver(std::uint32_t caster, Side seen) const {
   return seen != Side::on && (light_sides_[caster] == Side::on || light_sides_[caster] == mesh::opposite(seen));
 }
 
-/// Returns the silhouettes common to all view samples, less the contributions of the triangles left out for this
+/// Returns the silhouettes common to all view samples, minus the contributions of the triangles left out for this
 /// sample.
 std::vector<SoftVisibility::Silhouette> SoftVisibility::center_silhouettes(const LitPoint& sample,
                                                                            std::span<const Silhouette> of_all) const {
@@ -162,9 +162,9 @@ std::vector<glm::vec3> SoftVisibility::corners_from(const glm::vec3& p) const {
   return {glm::vec3(c - u - v), glm::vec3(c + u - v), glm::vec3(c + u + v), glm::vec3(c - u + v)};
 }
 
-/// Returns the centre; or, if an edge's end appears there, a point half or a quarter of the distance to a corner. (For
-/// a sphere this point and the centre of its disk are an ulp off the disk: they stand for the points where lines from p
-/// through them meet the disk.)
+/// Returns the centre; or, if an edge's end appears there, a point between the centre and a corner, at a quarter to
+/// half of the distance. (For a sphere, this point and the centre of its disk are an ulp off the disk: they stand for
+/// the points where lines from p through them meet the disk.)
 glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjection& projection,
                                            std::span<const Candidate> edges) const {
   const auto clear = [&](const glm::vec3& l) {
@@ -183,7 +183,7 @@ glm::vec3 SoftVisibility::choose_reference(const glm::vec3& p, const LightProjec
       if (clear(l)) return l;
     }
   }
-  return center;  // vertices at every one of these points: then no point is better
+  return center;  // a vertex appears at every one of these points, so none is better
 }
 
 bool SoftVisibility::counts_at_center(std::uint32_t triangle) const {
@@ -196,7 +196,7 @@ bool SoftVisibility::may_appear(const LightProjection& from, std::uint32_t edge)
   return !from.misses(casters_.positions[a], casters_.positions[b], lower_, upper_);
 }
 
-/// Returns, for a triangle met by p→l, the sign that the triangle's edges have been given; for other triangles 0.
+/// Returns the sign that a triangle's edges have been given if p→l meets the triangle; otherwise 0.
 std::int32_t SoftVisibility::layer_of(std::uint32_t triangle, const LitPoint& sample, const glm::vec3& l,
                                       Viewer viewer) const {
   const std::uint32_t caster = caster_of_[triangle];
@@ -204,7 +204,7 @@ std::int32_t SoftVisibility::layer_of(std::uint32_t triangle, const LitPoint& sa
   const std::array<glm::vec3, 3> corners = scene_.corners(triangle);
   if (box_misses(corners, glm::min(sample.p, l), glm::max(sample.p, l)) || is_left_out(caster, sample)) return 0;
   if (!visibility::segment_meets_triangle(sample.p, l, corners, light_).meets) return 0;
-  // The order of corners is the casters' own, to which facings refer: the scene's order.
+  // Facings refer to this order of corners: the scene's order, which is also that of the casters.
   const Side seen = mesh::side_of_plane(corners[0], corners[1], corners[2], sample.p);
   if (viewer == Viewer::center) return -sign_of(center_facings_[caster]) * sign_of(seen);
   return counts_for_receiver(caster, seen) ? 1 : 0;
@@ -248,7 +248,7 @@ double SoftVisibility::share_above_carrier(const LitPoint& sample) const {
   return share_above(outline_, glm::dot(n, center - glm::dvec3(a)), {glm::dot(n, u), glm::dot(n, v)});
 }
 
-/// Returns the area beyond the edge as a fraction of the light, or with a texture of its weight, with the sign of the
+/// Returns the area beyond the edge as a fraction of the light (with a texture: of its weight), with the sign of the
 /// turn around the reference point.
 double SoftVisibility::area_beyond(const Candidate& edge, int side, const RadialCoverage& coverage,
                                    const glm::dvec2& reference) const {
@@ -279,8 +279,8 @@ double SoftVisibility::visible_share(const LayerSum& sum, std::span<const glm::d
   if (!sum.in_front) return 0;
   std::vector<std::int32_t> layers(points.size(), sum.constant);
   for (const CoveredEdge& edge : sum.edges) {
-    // Counter-clockwise around the reference point. Rays through a shared end are decided by the same numbers: a point
-    // on such a ray belongs to the edge that begins there, and to no other.
+    // `first` to `last` runs counter-clockwise around the reference point. The same numbers decide for both edges that
+    // share an end: a point on the ray through it belongs to the edge that begins there, and to no other.
     const bool forward = edge.side > 0;
     const glm::dvec2 first = forward ? edge.clipped.from : edge.clipped.to;
     const glm::dvec2 last = forward ? edge.clipped.to : edge.clipped.from;
@@ -325,8 +325,8 @@ LayerSum SoftVisibility::sum_of(const LitPoint& sample, Viewer viewer, std::span
   result.constant = count.layers && !result.moved ? *count.layers : layers_at(sample, result.reference, viewer);
   if (count.at_most_one) result.constant = std::min(result.constant, 1);
   const RadialCoverage coverage(outline_, result.reference_at, arc_);
-  // k counts triangles counter-clockwise as seen by the viewer; for triangles between c and p, the orientation seen
-  // from c is the reverse.
+  // k counts triangles that the viewer sees counter-clockwise. Triangles between c and p have the opposite orientation
+  // as seen from c.
   const int sense = viewer == Viewer::center ? -projection.turn() : projection.turn();
   for (const Candidate& candidate : candidates) {
     const auto [a, b] = casters_.graph.edges[candidate.edge];

@@ -34,7 +34,7 @@ enum class Viewer {
   receiver,  ///< k_e(p): the actual layers
 };
 
-/// Edge that takes from the light, or gives back to the light, as seen from a view sample.
+/// An edge that takes light from a view sample, or gives it back.
 struct CoveredEdge {
   std::uint32_t edge = 0;         ///< index in the casters' graph
   std::int32_t multiplicity = 0;  ///< k_e of the counted triangles, never 0 (closed_casters.hpp)
@@ -42,8 +42,8 @@ struct CoveredEdge {
   ClippedEdge clipped;            ///< in frame coordinates
   double area = 0;          ///< contribution to `blocked`: ± k_e times the area beyond the edge, as a fraction of
                             ///< |L|, or times its weight
-  std::int32_t change = 0;  ///< layers of the region beyond the edge, as seen from the reference point, less those
-                            ///< before it
+  std::int32_t change = 0;  ///< layers of the region beyond the edge, as seen from the reference point, minus those of
+                            ///< the region in front of the edge
 };
 
 struct LayerSum {
@@ -60,16 +60,16 @@ struct LayerSum {
 };
 
 /// Soft shadow volumes (Assarsson and Akenine-Möller 2003) at one view sample: C++ twin of the method `soft-volume`,
-/// for rectangle, convex polygon and disk lights; and for spheres, each p with the disk visible from p.
+/// for rectangle, convex polygon and disk lights; and for spheres, where each p has the disk visible from p.
 /// docs/coverage.md derives the equations.
 ///
 /// For a textured light, |L| and areas are replaced by the integral of its luminance and the fractions of this
 /// integral. `above` stays a fraction of |L|, as in the method.
 ///
-/// With D(l) the number of layers between p and the light point l, `blocked` is its mean over the light. With the
-/// receiver's own silhouettes D counts the triangles met by p→l (of closed parts half of them: closed_casters.hpp), and
-/// `blocked` is the hidden fraction where no layers overlap. With the centre's silhouettes, a triangle with p and c on
-/// one side counts −1: there the method approximates.
+/// Let D(l) be the number of layers between p and the light point l; `blocked` is its mean over the light. With the
+/// receiver's own silhouettes, D counts the triangles met by p→l (of closed parts half of them: closed_casters.hpp),
+/// and `blocked` is the hidden fraction where no layers overlap. With the centre's silhouettes, a triangle with p and c
+/// on the same side counts −1: this is the method's approximation.
 ///
 /// Triangles coplanar with the carrier do not count, nor does a triangle that touches p. D at the reference point and
 /// the side of every edge are exact, with ties as defined in docs/definitions.md, so that no result is off by a whole
@@ -85,8 +85,8 @@ class SoftVisibility {
   [[nodiscard]] LayerSum at(const LitPoint& sample, Viewer viewer, bool at_most_one = false) const;
 
   /// Returns the fraction of these points of the light, given in frame coordinates, at which D is 0: the union of what
-  /// the sum adds, as Forest et al. 2008 take it at their points. With `weights`, the sum of these points' weights.
-  /// `sum` is of at() or at_center(), with all layers.
+  /// the sum adds, tested at points, as in Forest et al. 2008. With `weights`, returns the sum of these points'
+  /// weights. `sum`: result of at() or at_center(), with all layers.
   [[nodiscard]] static double visible_share(const LayerSum& sum, std::span<const glm::dvec2> points,
                                             std::span<const double> weights);
   /// Returns the light's samples in frame coordinates. Planar lights only (asserted).
@@ -94,8 +94,8 @@ class SoftVisibility {
 
   /// Edge of the counted triangles and its k_e, by index.
   using Silhouette = std::pair<std::uint32_t, std::int32_t>;
-  /// Count of the layers at the light's centre for at() with Viewer::center, given in parts. Edges that do not appear
-  /// on the light may be left out.
+  /// at_center() is at() with Viewer::center, for callers that have edges, and perhaps the layers at the light's
+  /// centre, already. Edges that do not appear on the light may be left out.
   struct CenterCount {
     std::optional<std::int32_t> layers = {};  ///< layers at the light's centre, if already counted
     bool at_most_one = false;                 ///< clamp the number of layers to one
@@ -112,8 +112,8 @@ class SoftVisibility {
     return layer_of(triangle, sample, center_, Viewer::center);
   }
 
-  /// Returns the triangles that count for the receiver and may appear on the receiver's light: the layers, each by
-  /// itself (layer_areas.hpp computes `blocked` from these triangles without edges).
+  /// Returns the triangles that count for the receiver and may appear on the receiver's light: the layers, one by one.
+  /// layer_areas.hpp computes `blocked` from these triangles without edges.
   [[nodiscard]] std::vector<std::array<glm::vec3, 3>> layers(const LitPoint& sample) const;
 
   /// Returns whether any caster meets the light itself. No edge bounds the caster's shadow there, and no sum is exact.
@@ -158,9 +158,9 @@ class SoftVisibility {
   glm::dvec2 lower_{-1}, upper_{1};  // bounds of the outline
   glm::vec3 center_{0};
   visibility::TriangleTree tree_;
-  std::vector<std::uint32_t> caster_of_;                           // for each triangle of the scene
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_plane_;  // plane, caster; sorted
-  std::vector<mesh::Side> light_sides_;                            // closed_casters.hpp
+  std::vector<std::uint32_t> caster_of_;                           // for each triangle of the scene: its caster
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> by_plane_;  // (plane, caster), sorted
+  std::vector<mesh::Side> light_sides_;                            // see closed_casters.hpp
   std::vector<mesh::Side> center_facings_;                         // facings of the counted triangles
   std::vector<Silhouette> silhouettes_;
 };

@@ -16,7 +16,7 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::uint32_t kMostTexels = 0xffff;  // along one side; the two sides share a 32-bit word
+constexpr std::uint32_t kMostTexels = 0xffff;  // limit along one side; the two sides share a 32-bit word
 
 /// Returns the index of the cell that contains `at`, of `count` cells, each 1 long.
 std::uint32_t cell_of(double at, std::uint32_t count) {
@@ -71,7 +71,7 @@ TextureWeights::TextureWeights(const visibility::LightTexture& texture)
     }
     words_[row + 1] = words_[row] + p * row_height;
   }
-  words_[height_] = 1;  // to the last bit: a full turn adds 0
+  words_[height_] = 1;  // exactly, so that a full turn adds 0
   brightest_ = *std::ranges::max_element(texture.luminance) / texture.mean_luminance;
 }
 
@@ -103,7 +103,7 @@ double TextureWeights::left_of(const glm::dvec2& from, const glm::dvec2& to) con
       next.x = low.x + (high.x - low.x) * ((next.y - low.y) / rise);
     }
     const double wide = next.x - at.x;
-    // Mean of P over x: from PP, unless the difference cancels.
+    // Mean of P over x: the difference of PP, unless that cancels.
     const double mean = std::abs(wide) > 0x1p-20 ? (row_sums(row, next.x).y - row_sums(row, at.x).y) / wide
                                                  : row_sums(row, 0.5 * (at.x + next.x)).x;
     sum += mean * (next.y - at.y);
@@ -118,11 +118,11 @@ double TextureWeights::along_rim(double position) const {
 
 double TextureWeights::beyond(const Edge& edge, const glm::dvec2& reference) const {
   const double first = rim_position(reference, edge.from), last = rim_position(reference, edge.to);
-  double along = last - first;  // of 8, the length of the rim
-  // An edge whose ends are less than 90° apart passes at most 6 of the rim's 8: of the four axis directions the edge
-  // passes at most one, so the rest of the turn passes three neighbours, which have a whole side of the square between
-  // them. So, of `along` and along ± 8, one below 1 is right, whatever its rounded sign; above 1, the sign of `along`
-  // is certain.
+  double along = last - first;  // the rim's length is 8
+  // An edge whose ends are less than 90° apart passes at most 6 of the rim's length 8: it passes at most one of the
+  // four axis directions. The rest of the turn passes three neighbouring ones, between which there is a whole side of
+  // the square. So if one of `along` and `along` ± 8 is below 1 in magnitude, it is right, whatever its rounded sign;
+  // otherwise the sign of `along` is certain.
   if (glm::dot(edge.from - reference, edge.to - reference) > 0 && std::abs(std::remainder(along, 8.0)) < 1) {
     along = std::remainder(along, 8.0);
   } else {

@@ -31,7 +31,7 @@ double weight_left_of(dvec2 from, dvec2 to, uvec2 texels) {
     const double next_y = row == last ? high.y : min(double(row + 1) / rows - 1.0LF, high.y);
     const double next_x = row == last ? high.x : low.x + (high.x - low.x) * ((next_y - low.y) / rise);
     const double wide = next_x - x;
-    // Mean of P over x: from PP, unless the difference cancels.
+    // Mean of P over x: the difference of PP, unless that cancels.
     const double mean = abs(wide) > 0.00000095367431640625LF  // 2⁻²⁰
                             ? (row_sums(uint(row), next_x, texels).y - row_sums(uint(row), x, texels).y) / wide
                             : row_sums(uint(row), 0.5LF * (x + next_x), texels).x;

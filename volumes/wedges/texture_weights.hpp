@@ -21,13 +21,13 @@ class TextureWeights {
   /// Returns ∫ P dy along the segment.
   [[nodiscard]] double left_of(const glm::dvec2& from, const glm::dvec2& to) const;
 
-  /// Returns ∫ P dy along the rim, counter-clockwise from the corner (1, −1) to the end of a fan of area `fan`, of 4 in
-  /// all and from −1/2 on.
+  /// Returns ∫ P dy along the rim, counter-clockwise from the corner (1, −1) to the end of a fan of area `fan`. Fans
+  /// begin at −1/2, and the whole has area 4.
   [[nodiscard]] double up_to_fan(double fan) const { return along_rim(2 * fan + 1); }
 
-  /// Returns the contribution of an edge seen from `reference`, strictly inside: ∫ P dy around the cone over the edge,
-  /// cut by the light, less the triangle, without the segments from its ends to the rim: at a vertex these cancel.
-  /// `side` is the parameter of RadialCoverage::beyond.
+  /// An edge, and the side as for RadialCoverage::beyond. beyond() returns the edge's contribution as seen from
+  /// `reference`, strictly inside: ∫ P dy around the cone over the edge, cut by the light, minus the triangle. The
+  /// segments from the edge's ends to the rim are omitted: they cancel at each vertex.
   struct Edge {
     glm::dvec2 from{0}, to{0};
     int side = 0;

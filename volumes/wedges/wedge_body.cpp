@@ -30,7 +30,7 @@ WedgeBody wedge_body(const Wedge& wedge, const Box& box) {
   for (const PolyhedronFace& face : polyhedron.faces) {
     const std::vector<std::uint32_t>& loop = face.loop;
     for (std::size_t i = 1; i + 1 < loop.size(); ++i) body.triangles.push_back({loop[0], loop[i], loop[i + 1]});
-    for (std::size_t i = 0; i < loop.size(); ++i) {  // the neighbour runs along the edge the other way
+    for (std::size_t i = 0; i < loop.size(); ++i) {  // the neighbour has this edge in the opposite direction
       const std::uint32_t from = loop[i], to = loop[(i + 1) % loop.size()];
       if (from < to) body.edges.push_back({from, to});
     }
@@ -39,7 +39,7 @@ WedgeBody wedge_body(const Wedge& wedge, const Box& box) {
 }
 
 std::vector<glm::dvec3> section_at(const WedgeBody& body, double height) {
-  Polygon points;  // z and x, so that counter-clockwise is seen from +y
+  Polygon points;  // z and x, so that the order is counter-clockwise as seen from +y
   for (const glm::dvec3& corner : body.corners) {
     if (corner.y == height) points.emplace_back(corner.z, corner.x);
   }
@@ -63,7 +63,7 @@ std::vector<mesh::Triangle> hull_triangles(const LightHull& light) {
     const auto& c = light.corners;
     return glm::dot(glm::cross(c[j] - c[i], c[k] - c[i]), c[l] - c[i]);
   };
-  // All planes through three corners of a solid are tried.
+  // Tries all planes through three corners of a solid.
   for (std::uint32_t i = 0; light.is_solid && i < count; ++i) {
     for (std::uint32_t j = i + 1; j < count; ++j) {
       for (std::uint32_t k = i + 1; k < count; ++k) {

@@ -22,7 +22,7 @@ namespace {
 
 using mesh::Side;
 
-/// Returns the side of (a, b, apex) that all corners are strictly on; `on` if there is none.
+/// Returns the side of the plane (a, b, apex) that all corners are strictly on; `on` if there is none.
 Side strict_side(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& apex, const LightHull& light) {
   const Side first = mesh::side_of_plane(a, b, apex, light.corners.front());
   const bool common = std::ranges::all_of(
@@ -35,8 +35,9 @@ struct Signed {
   double value = 0, error = 0;
 };
 
-/// g's coordinates carry 2 differences, a product and a sum: 4 · 2⁻⁵³ of |P| + |Q| each; times a difference and in a
-/// sum of three: 4 more. 16 · 2⁻⁵³ of the sum of sizes leaves a margin of two.
+/// The coordinates of g are off by 2 differences, a product and a sum: 4 · 2⁻⁵³ of |P| + |Q| each, P and Q being the
+/// products. The product with a difference and the sum of three add 4 more. 16 · 2⁻⁵³ of the sum of sizes leaves a
+/// margin of two.
 Signed height(const Crop& crop, const glm::dvec3& l) {
   const glm::dvec3 u = crop.triangle[1] - crop.triangle[0], v = crop.triangle[2] - crop.triangle[0],
                    w = l - crop.triangle[0];
@@ -47,8 +48,8 @@ Signed height(const Crop& crop, const glm::dvec3& l) {
   return {glm::dot(glm::cross(u, v), w), 0x1p-49 * sum};
 }
 
-/// Returns true if n · (x − l) − κ s h(l) ≥ 0 for both ends and all corners, certainly: by more than the error of
-/// evaluation.
+/// Returns whether n · (x − l) − κ s h(l) ≥ 0 for both ends x and all corners l, with certainty: by more than the error
+/// of the evaluation.
 bool holds_where_cropped(const glm::dvec3& n, double factor, const Crop& crop, const EdgeAndLight& cast) {
   return std::ranges::all_of(cast.light, [&](const glm::dvec3& l) {
     const Signed h = height(crop, l);

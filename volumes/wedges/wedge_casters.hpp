@@ -15,13 +15,13 @@
 /// Selection of the edges of a scene that cast penumbrae.
 ///
 /// The *crop* of an edge (Lehtinen et al. 2006; here for any soup). Let o_T(q) be the sign of (a, b, c; q) for a
-/// triangle T with apex c around the edge a b; k_e(q) = Σ o_T(q). For p = x + t (x − l), x on the edge, t > 0: T's
-/// plane h_T is affine and 0 at x, so h_T(p) = −t h_T(l), o_T(p) = −o_T(l), and k_e(p) = −k_e(l). Let all triangles but
-/// one, T, have the same sign ≠ 0 at all corners of the light's hull, hence on all of the hull, and let these signs sum
-/// to s = ±1. Then k_e(l) = s + o_T(l) is 0 exactly where o_T(l) = −s; so k_e(p) ≠ 0 implies s h_T(l) ≥ 0, therefore s
-/// h_T(p) ≤ 0: one half-space. In every other case there is no crop:
-/// - both triangles of a two-triangle edge mixed, or one of them only *touching* the light: the l with k_e(l) ≠ 0 are
-///   no longer on one side of a plane;
+/// triangle T with apex c at the edge a b; k_e(q) = Σ o_T(q). For p = x + t (x − l), x on the edge, t > 0: T's plane
+/// height h_T is affine and 0 at x, so h_T(p) = −t h_T(l), o_T(p) = −o_T(l), and k_e(p) = −k_e(l). Let all triangles
+/// but one, T, have the same sign ≠ 0 at all corners of the light's hull, hence on all of the hull, and let these signs
+/// sum to s = ±1. Then k_e(l) = s + o_T(l) is 0 exactly where o_T(l) = −s. So k_e(p) ≠ 0 implies s h_T(l) ≥ 0, and
+/// therefore s h_T(p) ≤ 0: one half-space. In every other case there is no crop:
+/// - both triangles of a two-triangle edge are mixed (the light is on both sides of their planes), or one of them only
+///   *touches* the light: the l with k_e(l) ≠ 0 are no longer on one side of a plane;
 /// - an open edge (one triangle): k_e(l) = o_T(l) is 0 on T's plane only;
 /// - a non-manifold edge with two or more mixed triangles; or with a sum of the other signs that is 0 (as an open edge)
 ///   or beyond ±1 (k_e is never 0).
@@ -68,10 +68,10 @@ struct Crop {
 };
 std::optional<Crop> crop_of(const Casters& casters, std::uint32_t edge, const LightHull& light);
 
-/// Returns a half-space that contains all p of the edge's penumbra with s h_T(p) ≤ 0, rounded outward. The half-space
-/// holds at the edge's ends and, with its normal n and some κ > 0, n·(x − l) ≥ κ s h_T(l) for the ends x and all
-/// corners l: both sides are affine in x and l, so where s h_T(l) ≥ 0, n·(x − l) ≥ 0 on all of edge and light. Returns
-/// nullopt if the rounding would change the normal by more than 2⁻²⁰ of its size.
+/// Returns a half-space that contains all p of the edge's penumbra with s h_T(p) ≤ 0, rounded outward. It contains the
+/// edge's ends. Its normal n satisfies, for some κ > 0, n · (x − l) ≥ κ s h_T(l) for the ends x and all corners l. Both
+/// sides are affine in x and l, so where s h_T(l) ≥ 0, n · (x − l) ≥ 0 on all of edge and light. Returns nullopt if the
+/// rounding would change the normal by more than 2⁻²⁰ of its size.
 std::optional<Plane> crop_plane(const Crop& crop, const EdgeAndLight& cast);
 
 }  // namespace penumbra::volumes

@@ -17,7 +17,7 @@ namespace {
 
 using scenes::Part;
 
-constexpr std::size_t kMostNames = 1000;  // names of wedges; further wedges share names
+constexpr std::size_t kMostNames = 1000;  // number of names of wedges; if there are more wedges, several share a name
 const glm::dvec4 kSound{0.25, 0.5, 0.9, 0.35}, kWrong{0.9, 0.15, 0.1, 0.5};
 const glm::dvec4 kEdge{0.05, 0.05, 0.05, 1}, kLight{1, 0.85, 0.3, 1}, kPoint{1, 0, 0.8, 1};
 

@@ -49,7 +49,7 @@ class Careless {
     if (to_b > to_a) b = light_.center + (b - light_.center) * (to_a / to_b);
   }
 
-  /// Returns the unit normal of the plane through `at` along `direction` and a corner of the light: the outermost
+  /// Returns the unit normal of the plane that contains `at`, `direction` and a corner of the light: the outermost
   /// corner on one side, without checking for other corners beyond; with `wrong`, the innermost.
   [[nodiscard]] glm::dvec3 tangent(const glm::dvec3& at, const glm::dvec3& direction, double turn, bool wrong) const {
     glm::dvec3 best(0);

@@ -10,13 +10,13 @@
 namespace penumbra::volumes {
 
 enum class Fault {
-  endpoint_not_moved = 1,  ///< all four planes from the unmoved edge: where the edge points at the light, no plane
+  endpoint_not_moved = 1,  ///< all four planes are of the unmoved edge: where the edge points at the light, no plane
                            ///< touches the light
-  wrong_light_vertex,      ///< a side plane through the corner of the light that leaves the most corners beyond
+  wrong_light_vertex,      ///< a side plane contains the corner of the light that leaves the most corners beyond
   front_back_swapped,      ///< front and back plane face the opposite direction
   rounded_inward,          ///< coefficients as floats, with d rounded towards the inside
   near_plane_clipped,      ///< one more plane, across the wedge a little below the edge
-  split_missing,           ///< where the construction splits, four planes of the whole edge nevertheless; in a scene
+  split_missing,           ///< where the construction splits, the whole edge has four planes instead; in a scene
                            ///< without splits, the longest edge is split and its second half omitted
 };
 

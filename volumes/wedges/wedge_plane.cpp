@@ -37,7 +37,8 @@ glm::dvec3 middle_of(std::span<const glm::dvec3> points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Keeps, of all offered directions (and their opposites), the one along which edge and light are farthest apart.
+/// Keeps the best of all offered directions (and their opposites): the one along which edge and light are farthest
+/// apart.
 class Best {
  public:
   explicit Best(const EdgeAndLight& cast) : cast_(cast) {}
@@ -111,9 +112,9 @@ std::optional<Plane> bounding_plane(glm::dvec3 normal, const EdgeAndLight& cast,
 
 std::optional<glm::dvec3> separating_direction(const EdgeAndLight& cast) {
   Best best{cast};
-  // Two disjoint convex shapes are separated along the normal of a face or at right angles to an edge of either shape;
-  // for a polygon and a segment: the polygon's normal, and the directions at right angles to the segment and to the
-  // normal or a side.
+  // Two disjoint convex shapes are separated along the normal of a face or at right angles to an edge of either shape.
+  // For a polygon and a segment, these are the polygon's normal, and the directions at right angles to the segment and
+  // to either the normal or a side.
   const std::span<const glm::dvec3> light = cast.light;
   const glm::dvec3 edge = cast.b - cast.a, normal = glm::cross(light[1] - light[0], light[2] - light[0]);
   best.offer(normal);
@@ -123,8 +124,8 @@ std::optional<glm::dvec3> separating_direction(const EdgeAndLight& cast) {
     best.offer(glm::cross(side, edge));
     best.offer(glm::cross(side, normal));
   }
-  // Directions from a corner, or from the middle, to the nearest point of the edge: for ends and corners, and for solid
-  // hulls.
+  // Also offers directions from a corner, or from the middle, to the nearest point of the edge: for separation at ends
+  // and corners, and for solid hulls.
   for (const glm::dvec3& l : light) best.offer(nearest_to_zero(cast.a - l, cast.b - l));
   best.offer(nearest_to_zero(cast.a - middle_of(light), cast.b - middle_of(light)));
   return best.direction();

@@ -10,11 +10,12 @@
 ///
 /// The *penumbra* of an edge e under a light L is the set of all p from which some open segment p→l, l on L, meets e: p
 /// = x + t (x − l) with x on e, t > 0. A half-space h ≥ 0 contains the penumbra exactly if h(x) ≥ 0 and h(x) ≥ h(l) for
-/// all x and l, since h(p) = h(x) + t (h(x) − h(l)); and, both conditions being affine, if they hold at the ends of e
-/// and the corners of L. So conservativeness is a finite number of signs, and they are evaluated without rounding.
+/// all x and l, since h(p) = h(x) + t (h(x) − h(l)). Both conditions are affine, so it suffices that they hold at the
+/// ends of e and the corners of L. Conservativeness is therefore a finite number of signs, which are evaluated without
+/// rounding.
 namespace penumbra::volumes {
 
-/// Half-space a x + b y + c z + d ≥ 0; (a, b, c) points inward. Coefficients as stored, exactly.
+/// Half-space a x + b y + c z + d ≥ 0; (a, b, c) points inward. The stored coefficients are exact.
 struct Plane {
   double a = 0, b = 0, c = 0, d = 0;
 

@@ -50,9 +50,9 @@ Vector face_area(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   return sum;
 }
 
-/// Returns whether the loop runs clockwise seen from the side the plane's normal points to. In double where that is
-/// certain: differences are off by 6 · 2⁻⁵³ M and at most 2 M, so a coordinate of a triangle's area, of two products,
-/// by under 2⁻⁴⁶ M².
+/// Returns whether the loop runs clockwise as seen from the side that the plane's normal points to. Decided in double
+/// where that is certain: with M the largest coordinate, differences are off by 6 · 2⁻⁵³ M and at most 2 M; so a
+/// coordinate of a triangle's area, which has two products, is off by less than 2⁻⁴⁶ M².
 bool runs_outward(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   glm::dvec3 sum(0);
   const glm::dvec3& first = polyhedron.corners[face.loop[0]].near;
@@ -67,7 +67,7 @@ bool runs_outward(const Polyhedron& polyhedron, const PolyhedronFace& face) {
   return sgn(mpq_class(area[0] * mpq_class(n.x) + area[1] * mpq_class(n.y) + area[2] * mpq_class(n.z))) < 0;
 }
 
-/// Returns whether the triangle has an area. In double where the result is certain, with the bound of runs_outward.
+/// Returns whether the triangle has an area. Decided in double where that is certain, with the bound of runs_outward.
 bool has_area(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
   const double size = std::max({largest(a.near), largest(b.near), largest(c.near)});
   if (largest(glm::cross(b.near - a.near, c.near - a.near)) > 0x1p-45 * size * size) return true;
@@ -170,7 +170,7 @@ class Cut {
 
   Polyhedron& mesh_;
   const Plane& plane_;
-  std::vector<int> sides_;  // side of each corner
+  std::vector<int> sides_;  // the side that each corner is on
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> crossings_;
 };
 
@@ -189,7 +189,7 @@ mpq_class height_of(const Plane& plane, const ExactPoint& p) {
 int side_of(const Plane& plane, const ExactPoint& p) {
   const double x = plane.a * p.near.x, y = plane.b * p.near.y, z = plane.c * p.near.z;
   const double size = std::abs(x) + std::abs(y) + std::abs(z) + std::abs(plane.d), value = x + y + z + plane.d;
-  // Corners are off by 2⁻⁵², products and three sums by 4 · 2⁻⁵³ more: below 2⁻⁵⁰.
+  // Corners are off by 2⁻⁵²; the product and three sums add 4 · 2⁻⁵³: below 2⁻⁵⁰ in all.
   if (std::abs(value) > 0x1p-50 * size + std::numeric_limits<double>::min()) return value > 0 ? 1 : -1;
   return sgn(height_of(plane, p));
 }
@@ -197,8 +197,9 @@ int side_of(const Plane& plane, const ExactPoint& p) {
 int orientation(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const ExactPoint& p) {
   const glm::dvec3 u = b.near - a.near, v = c.near - a.near, w = p.near - a.near;
   const double value = glm::dot(glm::cross(u, v), w);
-  // Coordinates are off by 2⁻⁵² M each, differences (below 2 M) by under 6 · 2⁻⁵³ M = 2⁻⁵⁰·⁴ of their bound. A product
-  // of three by thrice this error and 5 roundings; there are six of at most 8 M³: below 48 · 2⁻⁴⁸ M³.
+  // With M the largest coordinate: coordinates are off by 2⁻⁵² M each, differences (below 2 M) by less than 6 · 2⁻⁵³ M
+  // = 2⁻⁵⁰·⁴ of their bound. A product of three is off by three times this error and 5 roundings. There are six
+  // products of at most 8 M³: below 48 · 2⁻⁴⁸ M³.
   const double size = std::max({largest(a.near), largest(b.near), largest(c.near), largest(p.near)});
   if (std::abs(value) > 0x1p-42 * size * size * size) return value > 0 ? 1 : -1;
   const Vector normal = cross(difference(b, a), difference(c, a)), direction = difference(p, a);

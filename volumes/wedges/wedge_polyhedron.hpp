@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-/// Wedge cut by a box, as a polyhedron whose corners are exact rationals. Internal to this room: uses GMP's types.
+/// A wedge cut by a box, as a polyhedron whose corners are exact rationals. Internal to this folder, since it uses
+/// GMP's types.
 namespace penumbra::volumes {
 
 struct ExactPoint {

@@ -17,7 +17,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Random numbers that depend on nothing but the wedge's index (SplitMix64).
+/// Random numbers that depend only on the wedge's index (SplitMix64).
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15u) {}
@@ -67,8 +67,8 @@ double distance_beyond(const Plane& plane, const ExactPoint& p) {
   return -height_of(plane, p).get_d() / glm::length(plane.normal());
 }
 
-/// Returns a point of the penumbra outside the plane, x + t (x − l), if an end x or a ray x − l proves that there is
-/// one: of the points tried, the farthest outside.
+/// Returns a point of the penumbra, x + t (x − l), that is outside the half-space, if an end x or a ray x − l proves
+/// that there is one. Of the points tried, it is the one farthest outside.
 std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight& cast) {
   std::optional<ExactPoint> farthest;
   double distance = 0;
@@ -77,8 +77,8 @@ std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight
       const ExactPoint end(x), corner(l);
       const mpq_class above = height_of(plane, end), rise = above - height_of(plane, corner);
       if (sgn(above) >= 0 && sgn(rise) >= 0) continue;
-      mpq_class t = 1;  // if the ray falls, long enough to end below the plane; if the ray rises, short enough not to
-                        // end above
+      mpq_class t = 1;  // if the height falls along the ray, t must be large enough to end below the plane; if the
+                        // height rises, small enough not to end above
       if (sgn(above) >= 0) t = 1 - above / rise;
       if (sgn(above) < 0 && sgn(rise) > 0) t = -above / (2 * rise);
       std::array<mpq_class, 3> at;
@@ -92,8 +92,8 @@ std::optional<ExactPoint> witness_against(const Plane& plane, const EdgeAndLight
   return farthest;
 }
 
-/// Returns a direction with positive products with all x − l, found by an iteration to the point of their hull nearest
-/// to zero (Gilbert 1966): independent of separating_direction.
+/// Returns a direction that has a positive product with every x − l. It is found by iterating to the point of their
+/// hull nearest to zero (Gilbert 1966), independently of separating_direction.
 std::optional<glm::dvec3> other_separating_direction(const EdgeAndLight& cast) {
   std::vector<glm::dvec3> directions;
   for (const glm::dvec3& l : cast.light) directions.insert(directions.end(), {cast.a - l, cast.b - l});
@@ -139,7 +139,7 @@ void WedgeProofs::check(std::uint32_t number, ValidationReport& report) const {
   if (wedge.outcome != WedgeOutcome::wedge) return;
   const std::size_t before = report.violations.size();
   check_numbers(job);
-  if (report.violations.size() != before) return;  // no further statement is possible about such planes
+  if (report.violations.size() != before) return;  // nothing more can be checked about such planes
   check_planes(job);
   check_points(job);
   check_polyhedron(job);
@@ -187,8 +187,9 @@ void WedgeProofs::check_planes(Job& job) const {
   }
 }
 
-/// Returns whether n · (x − l) ≥ 0 on the part of the light where s h_T(l) ≥ 0: at the light's corners there, and where
-/// a segment between two corners leaves this part. Tests all segments, since stored corners need not be on one plane.
+/// Returns whether n · (x − l) ≥ 0 on the part of the light where s h_T(l) ≥ 0. It tests the light's corners in this
+/// part, and the points where a segment between two corners leaves the part: all segments, since stored corners need
+/// not be on one plane.
 bool WedgeProofs::is_proved_crop(const Job& job, const Plane& plane) const {
   const auto same = [&](const Plane& crop) { return crop.normal() == plane.normal() && crop.d == plane.d; };
   if (std::ranges::none_of(job.crops, same)) return false;
@@ -246,7 +247,7 @@ void WedgeProofs::check_polyhedron(Job& job) const {
   const Polyhedron polyhedron = cut_box(box_, job.wedge.planes);
   job.checked(Invariant::polyhedron);
   if (polyhedron.extent == Extent::empty) {
-    // A wedge holds its edge, and the box holds the edge.
+    // A wedge contains its edge, and the box contains the edge.
     job.fail(Invariant::polyhedron, {}, job.wedge.a, 0, "nothing of the wedge is in the scene's box");
   } else if (polyhedron.extent == Extent::flat) {
     ++job.report.flat;

@@ -19,7 +19,7 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr double kReach = 16;  // times the penumbra's extent: limit beyond which a cross-section counts as unbounded
+constexpr double kReach = 16;  // limit, in extents of the penumbra, beyond which a cross-section counts as unbounded
 constexpr std::array kDepths = {0.5, 1.0, 2.0};
 
 /// Returns the part of a polygon where n · q + d ≥ 0.

@@ -90,7 +90,7 @@ class Cover {
   std::vector<std::vector<std::uint32_t>> pieces_;
 };
 
-/// Returns k_e of each edge as carried by the half-edge view's silhouette loops; a loop that is not connected is a
+/// Returns k_e of each edge as carried by the half-edge view's silhouette loops. A loop that is not connected is a
 /// violation. Faces that are not held are `on` in `sides`.
 std::vector<int> carried_by_loops(const Casters& casters, const mesh::HalfEdgeView& surface,
                                   std::span<const mesh::Side> sides, ValidationReport& report) {

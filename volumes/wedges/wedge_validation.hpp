@@ -11,20 +11,20 @@
 #include <string_view>
 #include <vector>
 
-/// Proves, by exact signs, that wedges have the properties stated by their type and outcome. Uses the planes alone, and
-/// does not depend on the construction.
+/// Proves, by exact signs, that wedges have the properties that their type and outcome state. Uses only the planes, not
+/// the construction that made them.
 namespace penumbra::volumes {
 
 enum class Invariant {
   numbers,  ///< every coefficient is finite, no normal is zero
   cover,    ///< the wedges of an edge cover the edge: whole, or split in pieces that share their ends
-  outcome,  ///< `empty` has no length; `everywhere` has no planes, and no direction separates a tight edge from the
-            ///< light
+  outcome,  ///< `empty` has no length; `everywhere` has no planes and, if tight, no direction separates its edge from
+            ///< the light
   conservative,  ///< every plane holds on the penumbra: the signs of wedge_plane.hpp, or those of a crop
   sampled,       ///< points of the penumbra (with a crop: where k_e ≠ 0) are inside, exactly
   polyhedron,    ///< cut by the box: closed, convex, oriented outward
   half_spaces,   ///< the half-space tests and the mesh of `polyhedron` agree on the points inside
-  closed_loops,  ///< around every vertex Σ k_e in = Σ k_e out; half-edge loops are closed and carry the same k_e
+  closed_loops,  ///< around every vertex, Σ k_e in = Σ k_e out; half-edge loops are closed and carry the same k_e
   coverage,      ///< silhouettes add up to the area of the light hidden by triangles (coverage_validation.hpp)
 };
 inline constexpr std::size_t kInvariants = 9;
@@ -34,8 +34,8 @@ struct Violation {
   Invariant invariant = Invariant::conservative;
   std::optional<std::uint32_t> wedge;  ///< index in the list; nullopt for closed_loops and coverage
   std::optional<std::uint32_t> plane;  ///< index in the wedge's planes
-  glm::dvec3 point{0};                 ///< a point of the penumbra, yet outside the wedge; for other invariants the
-                                       ///< location of the flaw
+  glm::dvec3 point{0};                 ///< a point of the penumbra outside the wedge; for other invariants the location
+                                       ///< of the flaw
   double distance = 0;                 ///< distance of `point` from the plane, outside
   std::string what;
 };
@@ -53,7 +53,7 @@ struct WedgesToValidate {
   const LightHull& light;
   std::span<const Wedge> wedges;
   bool tight = false;                  ///< requires that `everywhere` is unavoidable
-  std::uint32_t points_per_wedge = 8;  ///< number of points of `sampled` and of `half_spaces`, each
+  std::uint32_t points_per_wedge = 8;  ///< number of points of `sampled`, and also of `half_spaces`
 };
 
 /// Validates in parallel; the result does not depend on the number of threads.

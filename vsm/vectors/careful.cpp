@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// View-sample mapping on a processor: one triangle for one view sample in double, at any position: at or below p's
-// height, through the light's plane, an edge within float rounding of a light sample. Uses the half-planes of
-// docs/view-sample.md.
+// View-sample mapping on a processor: tests one triangle for one view sample in double. The triangle may have any
+// position: at or below p's height, through the light's plane, or with an edge within float rounding of a light sample.
+// Uses the half-planes of docs/view-sample.md.
 
 #include "vsm/vectors/pairs.hpp"
 
@@ -27,8 +27,8 @@ struct HalfPlane {
   double at = 0, per_row = 0, per_column = 0, error = 0;
 };
 
-/// Zero of a half-plane along a row: positive beyond it (rising) or before it (falling), certain outside of ±slack.
-/// (bound row)
+/// The zero of a half-plane along a row. The half-plane is positive beyond it (rising) or before it (falling); this is
+/// certain at distances of more than `slack`. (bound row)
 struct Crossing {
   double at = 0, per_row = 0, per_shift = -1, slack = 0;  // the zero, in columns: at + row · per_row + shift ·
                                                           // per_shift
@@ -59,7 +59,7 @@ struct OneTriangle {
   const glm::vec3& p;
   const Corners& corners;
 };
-/// Decides with the light sample as stored.
+/// Decides one light sample by its stored point.
 void decide(const OneTriangle& one, std::uint32_t row, std::uint32_t column, Blocked& blocked, Open& open) {
   if (blocked.test(row, column)) return;
   const std::uint32_t light_sample = row * one.in.grid.columns + column;
@@ -89,7 +89,8 @@ class CarefulTest {
                                          half_plane(glm::cross(pc, pa), p_, size1(pc) * size1(pa))};
     const HalfPlane plane = half_plane(n, a, size1(b - a) * size1(c - a));
     const double side = glm::dot(n, pa), error = kSlack * size1(b - a) * size1(c - a) * size1(pa);
-    // Hidden where all of ±f are positive and the light sample is beyond the plane, with the sign of p's side.
+    // A light sample is hidden where all f and the triangle's plane are positive, after multiplication with the sign of
+    // p's side.
     for (const double sign : {1.0, -1.0}) {
       if (sign * side < -error) continue;
       mark({turned(edges[0], sign), turned(edges[1], sign), turned(edges[2], sign), turned(plane, sign)},
@@ -110,7 +111,7 @@ class CarefulTest {
 
   void mark(const std::array<HalfPlane, 4>& planes, bool certain) {
     const double last_row = in_.grid.rows - 1.0, last_column = in_.grid.columns - 1.0;
-    for (const HalfPlane& f : planes) {  // a plane with the whole light outside ends the test
+    for (const HalfPlane& f : planes) {  // the test ends if the whole light is outside of one plane
       const double most =
           std::max(f.per_row, 0.0) * last_row + std::abs(f.per_column) + std::max(f.per_column, 0.0) * last_column;
       if (f.at + most < -f.error) return;
@@ -155,7 +156,7 @@ class CarefulTest {
   const ClusterSample& at_;
   const glm::dvec3 p_;
   const Corners corners_;
-  glm::dvec3 first_{0}, per_row_{0}, per_column_{0};  // light samples, without deviation
+  glm::dvec3 first_{0}, per_row_{0}, per_column_{0};  // grid of the light samples, without deviations
   double reach_ = 0;                                  // bounds |l − p|₁
   Blocked& blocked_;
   Open& open_;
@@ -176,7 +177,7 @@ SeenLight seen_light(const CarefulInput& input) {
           static_cast<double>(light.deviation)};
 }
 
-/// Converts a plane from s and t to cells; the floats that store it round it.
+/// Converts a plane from s and t to cells. Storing it in floats rounds it.
 CellPlanes::Plane in_cells(const LightGrid& grid, const glm::dvec3& f, double error) {
   const glm::dvec2 half(grid.half_cells), first(grid.first_cell);
   const double per_x = f.x / half.x, per_y = f.y / half.y, at = f.z - first.x * per_x - first.y * per_y;

@@ -21,7 +21,7 @@
 /// View-sample mapping on a processor: data passed between its stages. Inside vsm/ only.
 namespace penumbra::vsm {
 
-// Names from engines/vectors/ that this data consists of.
+// Names from engines/vectors/ that this data is made of.
 using vectors::Cluster;
 using vectors::ClusterSample;
 using vectors::GridSample;
@@ -84,7 +84,7 @@ class Blocked {
 /// Buffers of one thread.
 struct PairScratch {
   std::vector<ClusterSample> samples;
-  TriangleTable triangles, near;  // of the cluster; of a group
+  TriangleTable triangles, near;  // triangles of the cluster, and those near a group
   SurvivorTable survivors;
   std::vector<std::uint32_t> roots, stack;
   std::vector<std::uint32_t> again;  // triangles (rows of `near`) that vectors of floats cannot decide
@@ -95,7 +95,7 @@ struct PairScratch {
   struct AskedSlot {
     std::uint32_t triangle, slot;
   };
-  std::vector<AskedSlot> asked_slots;          // likewise, for light samples in tiles
+  std::vector<AskedSlot> asked_slots;          // the same for light samples in tiles
   std::vector<glm::vec3> light_points;         // points of a sphere as one view sample sees it; empty: not computed
   std::vector<std::int32_t> row_and_from, to;  // spans of columns
   Blocked blocked;
@@ -118,10 +118,10 @@ void test_one(const CarefulInput& input, std::uint32_t row, std::uint32_t column
 /// double is not certain.
 std::optional<bool> hides(const CarefulInput& input, const glm::vec3& l);
 
-/// One triangle for one view sample and light samples in tiles, in double, at any position: four functions of a place
-/// in cells, at + x per_x + y per_y, each divided by its largest value and known to ±near. The triangle hides the light
-/// samples where all four have the sign of p's side of its plane, 1 or −1; 0: p is within rounding of the plane, and
-/// either sign may hold.
+/// One triangle for one view sample and light samples in tiles, in double, at any position. It has four functions of a
+/// place in cells, at + x per_x + y per_y, each divided by its largest value and known to ±near. The triangle hides the
+/// light samples where all four have the sign `side`: p's side of the triangle's plane, 1 or −1. If `side` is 0, p is
+/// within rounding of the plane, and either sign may hold.
 struct CellPlanes {
   struct Plane {
     float at = 0, per_x = 0, per_y = 0, near = 0;
@@ -131,8 +131,8 @@ struct CellPlanes {
 };
 CellPlanes planes_in_cells(const CarefulInput& input);
 
-/// Compute masks. `masks`: one for each view sample; all of its bits are written or none. test_tiles: for light samples
-/// in tiles.
+/// Compute masks: test_tiles for light samples in tiles, test_pairs for those in rows. `masks`: one for each view
+/// sample; all of its bits are written or none.
 void test_tiles(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 void test_pairs(const PairInput& input, PairScratch& scratch, OpenJudge& judge, std::span<SampleMask> masks);
 

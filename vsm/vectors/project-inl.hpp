@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // View-sample mapping on a processor: places of a vector of triangles on the light as one view sample sees them. Inside
-// vsm/ only.
+// vsm/ only. Bounds: docs/view-sample.md.
 
 #if defined(PENUMBRA_VSM_VECTORS_PROJECT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VSM_VECTORS_PROJECT_INL_HPP
@@ -25,7 +25,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
 constexpr std::size_t kGroup = 16;   // view samples that preselect triangles together
-constexpr std::size_t kChunk = 256;  // triangles between two checks whether anything is left to hide
+constexpr std::size_t kChunk = 256;  // triangles between two checks of whether anything is left to hide
 
 [[maybe_unused]] V column(const TriangleTable& table, std::size_t field, std::size_t i) {
   return hn::Load(D(), table[field] + i);
@@ -57,7 +57,7 @@ constexpr std::size_t kChunk = 256;  // triangles between two checks whether any
   }
 }
 
-/// Calls `test(view sample's index)` for each, with the triangles of its group in scratch.near.
+/// Calls `test(index)` for each view sample, with the triangles of its group in scratch.near.
 template <typename Test>
 void for_each_in_groups(const PairInput& in, PairScratch& scratch, Test test) {
   for (std::size_t first = 0; first < in.samples.size(); first += kGroup) {
@@ -79,7 +79,8 @@ class Projection {
                                  : 3e38F;
   }
 
-  /// Projects triangles from `i` on, one in each lane. Those that floats cannot place are added to scratch.again.
+  /// Projects the triangles from index `i` on, one in each lane. Those that floats cannot place are added to
+  /// scratch.again.
   void operator()(std::size_t i, std::size_t end) {
     const D d;
     const TriangleTable& near = s_.near;
@@ -142,7 +143,7 @@ class Projection {
                                hn::Sub(set(at_.in_grid.z), column(s_.near, corner + 2, i))};
     return in_.grid.cones ? Directions{turned(direction, 0), turned(direction, 1), turned(direction, 2)} : direction;
   }
-  /// Returns a direction as p sees a sphere or sun.
+  /// Returns one coordinate of a direction in the axes in which p sees a sphere or sun.
   [[nodiscard]] V turned(const Directions& direction, glm::length_t row) const {
     return hn::MulAdd(set(at_.turn[2][row]), direction.w,
                       hn::MulAdd(set(at_.turn[1][row]), direction.y, hn::Mul(set(at_.turn[0][row]), direction.x)));

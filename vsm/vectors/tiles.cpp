@@ -63,7 +63,7 @@ class TileTest {
   TileTest(const PairInput& in, PairScratch& scratch, const ClusterSample& at, SampleMask& mask)
       : in_(in), tiles_(*in.grid.tiles), s_(scratch), at_(at), mask_(mask), project_(in, scratch, at) {}
 
-  /// Clears light samples that are certainly hidden; uncertain ones that are not hidden become open.
+  /// Clears the light samples that are certainly hidden; uncertain ones that are not hidden become open.
   void operator()() {
     fill(in_.grid, true, mask_);
     s_.survivors.reserve(kChunk + hn::Lanes(D()));

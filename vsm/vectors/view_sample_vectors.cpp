@@ -97,8 +97,8 @@ class VectorViewSample final : public vectors::MaskMethod {
     }
   }
 
-  /// Returns bit k if all these view samples are outside of part k, which does not carry them. Exact: compares the
-  /// stored floats.
+  /// Returns a word with bit k set if all these view samples are outside of part k, which does not carry them. Exact:
+  /// compares the stored floats.
   [[nodiscard]] std::uint32_t parts_around(std::span<const GridSample> view_samples) const {
     if (apart_ == 0) return 0;
     std::uint32_t carried = 0;

@@ -42,12 +42,13 @@ enum SeenField : std::size_t {
   kAY,
   kBX,
   kBY,
-  kJumpLeft,    // change of a segment with a on its left and b on its right; otherwise the negative
+  kJumpLeft,    // change along a segment with a on its left and b on its right; the negative if a is on its right and b
+                // on its left
   kCornerSide,  // side of the corner
   kOffA,        // error of the product of a segment with a, relative to the segment's |x| + |y|
   kOffB,
-  kNearSide,  // a light sample is certainly on one side of the edge where |side| is larger
-  kAround,    // and no light sample farther from the edge's box than this is near it
+  kNearSide,  // a light sample with a larger |side| is certainly on one side of the edge
+  kAround,    // a light sample farther than this from the edge's box is not near the edge
   kSeenFields
 };
 static_assert(kSeenFields == CountScratch::kFields);
@@ -209,7 +210,7 @@ void see_counted(const LightTiles& tiles, const CountScratch& counting, float de
   }
 }
 
-/// Returns D at the corner as the edges require, from D at a light sample that is not open, counted by exact
+/// Returns the D at the corner that agrees with the edges, from D at a light sample that is not open, counted by exact
 /// predicates.
 std::optional<float> depth_by_one(const LightTiles& tiles, const CountScratch& counting, const Open& open,
                                   const ClusterSample& at, OpenJudge& judge) {

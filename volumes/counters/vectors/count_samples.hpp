@@ -21,9 +21,9 @@ struct CountScratch {
     std::uint32_t edge, slot;
   };
   std::vector<Near> near;                     ///< light samples within a group's error of an edge
-  std::vector<glm::vec3> p;                   ///< of a cluster
-  std::vector<std::uint32_t> planes, leaves;  ///< of a cluster
-  std::uint64_t candidates = 0, counted = 0;  ///< edges given to view samples; edges that appeared on the light
+  std::vector<glm::vec3> p;                   ///< of a cluster's view samples
+  std::vector<std::uint32_t> planes, leaves;  ///< of a cluster's view samples
+  std::uint64_t candidates = 0, counted = 0;  ///< edges tested for view samples; edges that appeared on the light
 };
 
 /// Counts the triangles between each view sample and each light sample (in tiles) at silhouette edges. `masks`: one for

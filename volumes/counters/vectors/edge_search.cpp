@@ -24,9 +24,9 @@ using visibility::TriangleTree;
 
 constexpr std::size_t kFewWedges = 16, kFewPixels = 16;  ///< cells with fewer are not divided
 constexpr int kDeepest = 32;
-constexpr std::uint32_t kCells = 32;  ///< cells a side of a face of the hemicube
-/// Enlargement of the light, so that no edge is missed that rounding may move across its rim: in addition to the
-/// distance of stored light samples from their places, DeviceLight::deviation.
+constexpr std::uint32_t kCells = 32;  ///< cells along each side of a face of the hemicube
+/// Factor that enlarges the light, so that no edge is missed that rounding may move across the light's rim. The
+/// distance of stored light samples from their places (DeviceLight::deviation) is added separately.
 constexpr double kAroundLight = 1 + 0x1p-10;
 
 using Edge = std::array<glm::dvec3, 2>;
@@ -38,8 +38,8 @@ Key key_of(const glm::vec3& a, const glm::vec3& b) {
   return {from.x, from.y, from.z, to.x, to.y, to.z};
 }
 
-/// Returns a box around all stored light samples, in scene floats: its middle, then its corners. Seen along the light's
-/// plane from close to it, its thickness determines the objects that may hide a sample.
+/// Returns a box around all stored light samples, in scene floats: its middle, then its corners. Close to the light's
+/// plane, the box's thickness determines which objects may hide a sample.
 LightHull hull_around(const visibility::DeviceLight& frame, float scale) {
   const double to_floats = 1 / static_cast<double>(scale), off = kAroundLight * static_cast<double>(frame.deviation);
   const glm::dvec3 u(frame.u), v(frame.v), n = glm::normalize(glm::cross(u, v));
@@ -183,7 +183,7 @@ void EdgeSearch::build_kd_tree(const EdgeSearchInput& input, const std::vector<W
   cells_ = static_cast<std::size_t>(std::ranges::count(nodes_, 0U, &Node::children));
 }
 
-/// `list`: wedges that meet the box and are not stored at a node above.
+/// `list`: indices of the wedges that may meet the box and are not stored at a node above.
 void EdgeSearch::divide(std::uint32_t node, const Box& box, std::span<const Wedge> wedges,
                         std::span<const std::uint32_t> list, std::vector<std::uint32_t>& pixels,
                         const visibility::ViewSamples& samples, int depth) {
@@ -262,8 +262,8 @@ void for_each_cell(const Cell& face, std::uint32_t column, std::uint32_t row, st
 
 }  // namespace
 
-/// A point p = x + t (x − l), x on the edge and t > 0, is seen from c in a direction (x − c) + t (x − l): in the cone
-/// of the ends' x − c and x − l.
+/// Let c be the light's centre. A point p = x + t (x − l), x on the edge and t > 0, is seen from c in the direction (x
+/// − c) + t (x − l): a direction in the cone spanned by x − c and x − l of both ends.
 void EdgeSearch::build_hemicube(const std::vector<Edge>& edges, std::span<const glm::dvec3> light) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> in_cell;
   std::vector<glm::dvec3> directions;

@@ -34,7 +34,8 @@ EdgeLists::EdgeLists(const render::Device& device, std::string method, bool crop
       sides_(method_),
       crops_(crops),
       lists_(device, {"edge lists", sizeof(Head), sizeof(std::uint32_t), kFirstWords}) {
-  render::require_features(device.info(), shaders::kFindEdgesComp, "find edges");  // made when the light is known
+  render::require_features(device.info(), shaders::kFindEdgesComp, "find edges");  // checked now; the pass is made when
+                                                                                   // the light is known
 }
 
 void EdgeLists::prepare_mesh(const visibility::SceneFloats& scene, const TriangleTree& tree, float scale) {
@@ -60,8 +61,8 @@ void EdgeLists::prepare_light(const visibility::Light& light, const visibility::
   build_pass();
 }
 
-/// Prepares the edges of all casters, or without the light's body; cut at the light's plane if something lies behind
-/// it.
+/// Prepares the edges of all casters, without the light's body if it has one, and cut at the light's plane if something
+/// lies behind it.
 void EdgeLists::prepare_edges() {
   const LightEdges edges = sides_.prepare_light(*light_, frame_, scale_);
   is_cut_ = edges.front.has_value();
@@ -85,9 +86,9 @@ void EdgeLists::prepare_edges() {
   if (edges.front) front_->cut(input(*edges.front));
 }
 
-/// Stack of the traversal: in depth-first order, a node for each team at a time, each node adds at most seven more than
-/// it removes. Cut edges add a level to a hierarchy, and may be many; rounded up, so that few scenes need different
-/// passes.
+/// Chooses the size of the traversal's stack. Nodes are taken in depth-first order, one for each team at a time, and
+/// each adds at most seven more than it removes. Cut edges add a level to a hierarchy, and may be many. The size is
+/// rounded up, so that few scenes need different passes.
 void EdgeLists::build_pass() {
   const std::uint32_t lanes = device_->limits().subgroup_size, of_teams = std::max(lanes, TriangleTree::kWidth);
   const std::uint32_t depth = std::max({tree_->depth, whole_->depth(), front_->depth(), back_ ? back_->depth() : 0U});

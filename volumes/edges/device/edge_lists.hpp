@@ -28,8 +28,8 @@
 
 namespace penumbra::volumes {
 
-/// View samples for which lists are made: those in a band of a tile's rows that are on one side of the light (+1: the
-/// side that u × v points to; −1: behind).
+/// The view samples for which lists are made: those in a band of a tile's rows that are on one side of the light (+1:
+/// the side that u × v points to; −1: the other side).
 struct EdgeListInput {
   const device::ViewUpload& view;
   const device::TriangleUpload& triangles;
@@ -48,19 +48,20 @@ class EdgeLists {
     std::uint32_t words = 0, unfinished = 0;
   };
 
-  /// `method` names the method in errors. `crops`: false includes edges that are not silhouettes as seen from their
+  /// `method` names the method in errors. `crops` = false also lists edges that are not silhouettes as seen from their
   /// cluster.
   EdgeLists(const render::Device& device, std::string method, bool crops = true);
 
-  /// `tree`: over the scene's triangles. `scale`: of all lengths on the device.
+  /// `tree`: hierarchy over the scene's triangles. `scale`: scale of all lengths on the device.
   void prepare_mesh(const visibility::SceneFloats& scene, const visibility::TriangleTree& tree, float scale);
   /// `frame`: make_device_light(light, scale). Throws InputError if float32 cannot represent light and scene together.
   void prepare_light(const visibility::Light& light, const visibility::DeviceLight& frame);
 
-  /// Sets its fields of `push` and finds the lists. Returns false if the lists would exceed the largest storage buffer.
+  /// Sets the lists' fields of `push` and finds the lists. Returns false if the lists would exceed the largest storage
+  /// buffer.
   [[nodiscard]] bool find(render::Commands& commands, gpu::ScatterPush& push, const EdgeListInput& input);
 
-  [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< number of records without cut ones
+  [[nodiscard]] std::size_t edge_count() const { return edge_count_; }  ///< number of uncut records
   [[nodiscard]] const visibility::LightTouch& touch() const { return touch_; }
   // Results of the last find():
   [[nodiscard]] std::uint64_t words() const { return words_; }  ///< length of the lists
@@ -68,8 +69,8 @@ class EdgeLists {
   [[nodiscard]] const std::vector<visibility::PassTime>& times() const { return times_; }
   [[nodiscard]] const render::Buffer& heads() const { return *heads_; }
   [[nodiscard]] const render::Buffer& lists() const { return lists_.buffer(); }
-  /// Returns bindings 0 to 11 of the kernels over the lists: view samples, heads, lists, EdgeTexels::slots, triangles'
-  /// corners.
+  /// Returns bindings 0 to 11 of the kernels that read the lists: view samples, heads, lists, EdgeTexels::slots, and
+  /// the triangles' corners.
   [[nodiscard]] std::vector<render::BufferReference> inputs(const EdgeListInput& input) const;
 
  private:
@@ -97,9 +98,9 @@ class EdgeLists {
     EdgeUpload edges;
   };
   std::optional<WithoutBody> without_body_;  // edges without the body of the last light that has one
-  EdgeUpload* front_ = nullptr;              // one of the above
-  std::optional<EdgeUpload> back_;           // a copy of it, if the light's plane cuts and the light emits to both
-                                             // sides
+  EdgeUpload* front_ = nullptr;              // whole_ or without_body_
+  std::optional<EdgeUpload> back_;           // a copy of *front_, if the light's plane cuts edges and the light emits
+                                             // to both sides
 
   const visibility::Light* light_ = nullptr;
   visibility::DeviceLight frame_;

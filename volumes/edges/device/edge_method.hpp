@@ -30,7 +30,8 @@ class EdgeMethod : public device::MaskMethod {
   virtual device::MaskLayout prepare_kernel() = 0;
   /// Returns the kernel's push constants other than those of the lists.
   [[nodiscard]] virtual gpu::ScatterPush make_push() const = 0;
-  /// Records the kernel over a band's lists. `inputs`: its bindings from 0; the kernel's own follow.
+  /// Records the kernel over a band's lists. `inputs`: the lists' bindings, from 0 on; the kernel's own bindings
+  /// follow.
   virtual void record(const gpu::ScatterPush& push, std::vector<render::BufferReference> inputs,
                       const visibility::Tile& band) = 0;
   void count(std::map<std::string, std::uint64_t>& counters) override {

@@ -25,7 +25,7 @@ layout(scalar, binding = 2) buffer Lists {
 layout(scalar, push_constant) uniform Push { ScatterPush push; };
 
 const uint kTeam = 8;                                     // children of a node, records of a leaf
-// A team of lanes handles a node's children: several teams in a subgroup, or one that takes several rounds.
+// A team of lanes handles a node's children. A subgroup has several teams, or one that takes several rounds (turns).
 const uint kTeams = kLanes < kTeam ? 1 : kLanes / kTeam, kTurns = kLanes < kTeam ? kTeam / kLanes : 1;
 const uint kBlock = 8;                                    // a block is kBlock × kBlock pixels
 const uint kClusters = 4;                                 // most clusters of view samples in a block
@@ -84,22 +84,22 @@ ViewSample fetch_view_sample(uint pixel) {
 
 float level_error(vec3 p) { return 16.0 * kRound * skew * (size1(push.center - p) + size1(p)) + push.deviation; }
 
-// Returns whether something is close to the light's plane, and a segment to a light sample may rise by less than 1 /
-// 256. `away`: |p − center|. (visibility/lights/light_touch)
+// Returns whether something is close to the light's plane and, at the same time, a segment from p to a light sample may
+// rise by less than 1 / 256 of its length. `away`: |p − center|. (visibility/lights/light_touch)
 bool sees_flat(float away, float height) {
   const float farthest = away + 1.0001 * (length(push.u) + length(push.v)) + push.deviation;
   return push.near_plane != 0 && height < farthest / 256.0;
 }
 
-// Returns the distance below p's height, in lengths of an edge's farther end, within which an edge may pass through p
-// within rounding. (bound window)
+// Returns the distance below p's height within which an edge may still pass through p within rounding, in lengths of
+// the edge's farther end. (bound window)
 float lift_of(ViewSample at, vec2 window) {
   const vec2 off = abs(at.foot - first_cell);
   return 64.0 * kRound * (1.0 + 0.125 * (max(off.x, off.y) + per_length * at.height) / min(window.x, window.y));
 }
 
-// Returns the rounding of an end at this height over the light's plane, which may have been cut there, as a length
-// added to its vector. (bound cut)
+// Returns the rounding error of an end that may have been cut at the light's plane, given its height over that plane.
+// The error is a length that is added to the length of the end's vector. (bound cut)
 float cut_far(float over_light) { return over_light < 512.0 * kRound * push.reach ? push.cut_reach / 4.0 : 0.0; }
 
 // Returns whether p is within rounding of the triangle with corners p + da, p + db, p + dc. (bound on)
@@ -111,14 +111,16 @@ bool is_on_triangle(vec3 da, vec3 db, vec3 dc) {
          least >= -(256.0 * unit * push.reach * size + 64.0 * unit * far * far * far);
 }
 
-// The hull of view samples and a rectangle of the light's plane, `low` to `high` in cells from the light's middle:
-// between two parallel planes, and in n·x ≤ beyond for four planes, one in each component of nx, ny, nz. (bound shaft)
+// The hull of view samples and a rectangle of the light's plane, `low` to `high` in cells from the light's middle. It
+// is bounded by two parallel planes, and by n·x ≤ beyond for four planes, one in each component of nx, ny, nz. (bound
+// shaft)
 struct Shaft {
   float lowest, highest;                                  // along the axis
   vec4 nx, ny, nz, beyond;
 };
 
-// `slopes`: the largest (foot − high) / height, (low − foot) / height, feet in cells from the light's middle.
+// `slopes`: the largest (foot − high) / height, and the largest (low − foot) / height; feet in cells from the light's
+// middle.
 Shaft make_shaft(vec2 low, vec2 high, vec4 slopes, float height) {
   Shaft shaft;
   const vec4 signs = vec4(1.0, -1.0, 1.0, -1.0);
@@ -142,9 +144,9 @@ vec4 slopes_of(vec2 low, vec2 high, vec2 foot, float height) {
   return over / height;
 }
 
-// Returns a triangle's contribution to k_e for all view samples in the box middle ± half_size: −1, 0, 1; or 2 if the
-// contribution differs, is not certain, or one of them may lie on the triangle: p deviates from its carrier's plane by
-// its rounding. (bound side)
+// Returns a triangle's contribution to k_e for all view samples in the box middle ± half_size: −1, 0 or 1; or 2 if the
+// contribution is not the same for all, is not certain, or one of them may lie on the triangle, since p deviates from
+// its carrier's plane by its rounding. (bound side)
 int side_for_all(vec3 n, vec3 anchor, vec3 middle, vec3 half_size) {
   const vec3 d = middle - anchor;
   const float f = dot(n, d);

@@ -14,14 +14,14 @@ namespace {
 using visibility::Texel;
 using visibility::TriangleTree;
 
-constexpr std::uint32_t kPerChild = 3;  // texels of a node's child
+constexpr std::uint32_t kPerChild = 3;  // number of texels of a node's child
 constexpr std::uint32_t kNear = 1024;   // unchanged texels between two changes that are cheaper to write than to skip
 constexpr std::size_t kUsedList = 2;    // list of EdgeTexels::slots whose integers mark used slots
 constexpr std::size_t kLists = 6;
 
 }  // namespace
 
-/// Adapter for cut_hierarchy.
+/// Adapter for cut_hierarchy: drops children and records of the uploaded texels.
 class EdgeUpload::Dropping {
  public:
   Dropping(EdgeUpload& edges, float scale) : edges_(edges), texels_(edges.texels_), scale_(scale) {}
@@ -109,7 +109,7 @@ void EdgeUpload::cut(const CutInput& input) {
   write_all(nodes, dropped_slots_);
 }
 
-/// Appends a tree below a root of its own, next to the first.
+/// Appends a second tree, and adds a root above both trees.
 void EdgeUpload::append(const EdgeTexels& more) {
   const auto first_node = static_cast<std::uint32_t>(whole_nodes_ / kPerChild / TriangleTree::kWidth);
   const auto first_leaf = static_cast<std::uint32_t>(whole_slots_ / TriangleTree::kWidth);

@@ -17,7 +17,7 @@ namespace penumbra::volumes {
 
 /// A hierarchy of edges on the device (EdgeTexels) that is cut at a light's plane, and restored for the next light.
 /// Only parts that the plane cuts are recomputed and written: subtrees behind it are removed, and cut edges form a
-/// second tree below a common root. The twin of CutEdges on vector units.
+/// second tree below a common root. CutEdges is its twin on vector units.
 class EdgeUpload {
  public:
   EdgeUpload(const render::Device& device, EdgeTexels texels);
@@ -46,7 +46,7 @@ class EdgeUpload {
   const render::Device* device_;
   EdgeTexels texels_;
   std::uint32_t root_ = 0, whole_depth_ = 0;
-  std::size_t whole_nodes_ = 0, whole_slots_ = 0;  // texels
+  std::size_t whole_nodes_ = 0, whole_slots_ = 0;  // sizes in texels
   bool is_cut_ = false;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> dropped_nodes_;  // texel, and its previous reference
   std::vector<std::uint32_t> dropped_slots_;

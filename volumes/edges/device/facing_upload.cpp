@@ -19,10 +19,11 @@ namespace {
 
 constexpr double kRound = 0x1p-24;        // of float32
 constexpr double kRoundDouble = 0x1p-53;  // of double
-constexpr double kLeastNormal = 0x1p-40;  // smaller normal coordinates are taken as 0, and the slack accounts for that
+constexpr double kLeastNormal = 0x1p-40;  // a smaller coordinate of a normal is taken as 0, and the slack accounts for
+                                          // that
 constexpr int kGrid = 80;                 // coarse: scaled coordinates are multiples of 2⁻⁸⁰
 constexpr float kUnderflow = 0x1p-120F;   // (bound underflow)
-constexpr float kFar = 0x1p60F;           // beyond this many scene sizes floats are not used
+constexpr float kFar = 0x1p60F;           // points farther away than this many scene sizes are left to the host
 constexpr float kAlwaysUndecided = 0x1p100F;
 constexpr gpu::FacingTriangle kNoArea = {{0, 0, 0}, {0, 0, 0}, {-1, -1, -1}};
 
@@ -39,7 +40,7 @@ struct Normal {
   std::array<double, 3> n{}, error{};
 };
 
-/// (b − a) × (c − a), and the error of each coordinate (bound normal).
+/// Returns (b − a) × (c − a), and the error of each coordinate (bound normal).
 Normal normal_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   const glm::dvec3 e1 = glm::dvec3(b) - glm::dvec3(a), e2 = glm::dvec3(c) - glm::dvec3(a);
   Normal normal;
@@ -52,7 +53,7 @@ Normal normal_of(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
   return normal;
 }
 
-/// Returns the error of n · g for a unit of |g| in this coordinate (bound slack). Rounded up, with a margin.
+/// Returns the error of n · g in this coordinate for each unit of |g| (bound slack). Rounded up, with a margin.
 double slack_of(double n, double error) {
   if (n == 0 && error == 0) return 0;
   const double slack = std::max(16 * kRound * std::abs(n) + 2 * error, kLeastNormal);

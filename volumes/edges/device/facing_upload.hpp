@@ -14,7 +14,7 @@ namespace penumbra::volumes {
 /// Triangles and points in the format of silhouette_facing.comp, with the error bounds of volumes/README.md (Bounds).
 class FacingUpload {
  public:
-  /// `positions`: of the mesh; determines the power of two that brings their largest coordinate into [1, 2).
+  /// `positions`: those of the mesh; they determine the power of two that brings their largest coordinate into [1, 2).
   explicit FacingUpload(std::span<const glm::vec3> positions);
 
   /// Returns the triangles, padded with triangles without area to a whole number of words of 32.

@@ -5,29 +5,31 @@
 
 // First pass of edge scatter, a workgroup for each block of pixels. The block's view samples are divided into clusters
 // at gaps. For each cluster it lists: the edges that the shaft from the cluster to the light meets and that may be
-// silhouettes as seen from it; and the triangles that the much thinner shaft to one corner of the light meets.
+// silhouettes as seen from it; and the triangles that the much thinner shaft to one corner of the light meets. Bounds:
+// docs/edge-scatter.md.
 
 layout(constant_id = 2) const uint kStackSize = 64;
-layout(constant_id = 3) const uint kCrops = 1;              // 0: lists edges that are not silhouettes, too
+layout(constant_id = 3) const uint kCrops = 1;              // 0: also lists edges that are not silhouettes
 
 layout(binding = 3) uniform usamplerBuffer edge_nodes;      // 3 texels for each child: (centre, reference), (half
                                                             // extent, –), cone of normals (axis, cosine)
 layout(binding = 4) uniform usamplerBuffer triangle_nodes;  // 2 texels for each child
-// An edge record (EdgeTexels), a texel buffer for each: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2), (anchor
-// 2).
+// Edge records (EdgeTexels), one texel buffer for each member: (a, plane 1), (b, plane 2), (n 1), (anchor 1), (n 2),
+// (anchor 2).
 layout(binding = 5) uniform usamplerBuffer record_a;
 layout(binding = 6) uniform usamplerBuffer record_b;
 layout(binding = 7) uniform usamplerBuffer record_n1;
 layout(binding = 8) uniform usamplerBuffer record_anchor1;
 layout(binding = 9) uniform usamplerBuffer record_n2;
 layout(binding = 10) uniform usamplerBuffer record_anchor2;
-// A triangle: (a, triangle), (b, plane), (c, light whose body it is).
+// Triangles, one texel buffer for each corner: (a, triangle), (b, plane), (c, light whose body the triangle belongs
+// to).
 layout(binding = 11) uniform usamplerBuffer corner_a;
 layout(binding = 12) uniform usamplerBuffer corner_b;
 layout(binding = 13) uniform usamplerBuffer corner_c;
 
-const uint kBatch = 24;                                     // leaves handled at a time
-const uint kMostLeaves = kBatch + kTeams * kTeam;           // and those that one more iteration adds
+const uint kBatch = 24;                                     // leaves handled together
+const uint kMostLeaves = kBatch + kTeams * kTeam;           // kBatch, and those that one more iteration adds
 
 shared uint stack[kStackSize];
 shared uint leaves[kMostLeaves];
@@ -36,8 +38,9 @@ shared uint items[kMostLeaves * kTeam];
 // Bounding box of the cluster's view samples.
 vec3 middle, half_size;
 
-// Returns whether the whole cluster sees every triangle around the edges below from the same side, so that none is a
-// silhouette: a vector d = p − x lies in D ± e, and all normals within an angle of `cone.xyz`. (bound cone)
+// Returns whether the whole cluster sees every triangle at the edges below a node from the same side, so that none of
+// these edges is a silhouette. A vector d = p − x lies in D ± e, and all normals are within an angle of `cone.xyz`.
+// (bound cone)
 bool same_side(vec3 center, vec3 extent, vec4 cone) {
   const vec3 d = middle - center, e = half_size + extent;
   const float straight = abs(dot(cone.xyz, d)), aside = length(cross(cone.xyz, d));
@@ -73,7 +76,7 @@ bool triangle_matters(Shaft shaft, uint slot) {
   return t0.w != kNone && t2.w != push.light && meets(shaft, vec3(dot(axis, a), dot(axis, b), dot(axis, c)), least);
 }
 
-// More words than any buffer has: the counter of a list that grows beyond all bounds stays here and never wraps to 0.
+// More words than any buffer has. The counter of a list that grows without limit stays here and never wraps to 0.
 const uint kTooMany = 0xc0000000u;
 
 // Writes the collected items as a piece in front of the list.
@@ -95,8 +98,9 @@ uint emit(uint next, uint count) {
   return first;
 }
 
-// Pushes the root of this dispatch's part of a hierarchy on the stack; or, if a leaf lies above the part's level,
-// collects the leaf in the first of the parts that it could belong to. Returns the sizes of stack and leaves.
+// Pushes the root of this dispatch's part of a hierarchy on the stack. If the hierarchy has a leaf above the part's
+// level instead, collects that leaf in the first of the parts that it could belong to. Returns the sizes of stack and
+// leaves.
 uvec2 first_of_part(bool edges) {
   uint node = edges ? push.edge_root : 0;
   uvec2 sizes = uvec2(1, 0);
@@ -153,7 +157,8 @@ uint walk(Shaft shaft, bool edges, uint head) {
       }
     }
     const uint end = leaf_count * kTurns;
-    for (; i < end; i += kTeams) {                          // one round of the teams after the other, leaf by leaf
+    for (; i < end; i += kTeams) {                          // the teams take one round of a leaf's slots after the
+                                                            // other, leaf by leaf
       const uint number = i / kTurns + team;
       const bool used = number < leaf_count;
       const uint slot = (used ? leaves[number] : 0) * kTeam + i % kTurns * kLanes + member;
@@ -165,7 +170,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
     subgroupMemoryBarrierShared();
     subgroupBarrier();
     if (item_count > 0) head = emit(head, item_count);
-    // Some drivers for processors end loops after 65535 iterations, which must be reported.
+    // Some drivers that run on processors end loops after 65535 iterations, which must be reported.
     if (i < end || (stack_size > 0 && leaf_count < kBatch)) {
       atomicOr(unfinished, 1u);
       break;
@@ -175,7 +180,7 @@ uint walk(Shaft shaft, bool edges, uint head) {
   return head;
 }
 
-// This lane's view samples of the block have the indices lane, lane + kLanes …; their clusters take two bits each.
+// This lane's view samples have the indices lane, lane + kLanes … in the block; their clusters take two bits each.
 const uint kEach = kBlock * kBlock / kLanes;
 uint cluster_of_each, on_each;
 vec3 place_of[kEach];
@@ -189,8 +194,8 @@ uint pixel_of(uint i, uint block) {
   return at.x < push.width && at.y < push.row_count ? at.y * push.width + at.x : kNone;
 }
 
-// Divides a cluster in the middle of its box, if there is a gap of more than a third of the box. Returns whether it
-// did.
+// Divides a cluster at the middle of its box, if its view samples leave a gap there of more than a third of the box.
+// Returns whether it did.
 bool split(uint cluster, uint new_cluster) {
   vec3 lower = vec3(1e30), upper = vec3(-1e30);
   for (uint i = 0; i < kEach; ++i) {
@@ -245,7 +250,7 @@ void list_for(uint cluster, uint block) {
   middle = 0.5 * lower + 0.5 * upper;
   half_size = (0.5 * upper - 0.5 * lower) * (1.0 + 8.0 * kRound);
   const uint place = 2 * (block * kClusters + cluster);
-  const bool first_part = push.part == 0;                 // other parts continue its lists
+  const bool first_part = push.part == 0;                 // other parts continue the lists of the first
   uint edges = first_part ? kNone : heads[place], triangles = first_part ? kNone : heads[place + 1];
   if (push.edge_depth > 0) edges = walk(make_shaft(low, half_cells, slopes, height), true, edges);
   if (push.triangle_depth > 0) triangles = walk(make_shaft(low, low, corner_slopes, height), false, triangles);
@@ -264,7 +269,7 @@ void main() {
     const uint pixel = pixel_of(i, block);
     const ViewSample it = fetch_view_sample(pixel == kNone ? 0 : pixel);
     place_of[i] = it.p;
-    // Factor 0.5: a compiler may round differently in the passes that use these lists.
+    // Factor 0.5: a compiler may round level_error differently in the passes that use these lists.
     if (pixel != kNone && it.carrier != kNone && it.height > 0.5 * level_error(it.p)) on_each |= 1u << i;
   }
   if (!subgroupAny(on_each != 0)) return;

@@ -9,14 +9,15 @@ namespace penumbra::volumes::gpu {
 using uint = std::uint32_t;
 #endif
 
-/// Bits 0 and 1 of a triangle's word: the light is in front of it, behind it (neither: on its plane, or no area). Bits
-/// 2 and 3: the same bits if the triangle counts for that side (ShadowCasters::counted_sides), else 0.
+/// Bits 0 and 1 of a triangle's word: the light is in front of the triangle, or behind it (neither: on its plane, or
+/// the triangle has no area). Bits 2 and 3: the same bits if the triangle counts for that side
+/// (ShadowCasters::counted_sides), else 0.
 const uint kFrontBit = 1u, kBackBit = 2u, kBothBits = 3u, kCountedShift = 2u;
 
-/// The triangles of an edge are a pair of words, 2 · triangle each, + 1 if the triangle's winding runs from b to a.
-/// Where an edge has one triangle, the second word is of a triangle that never counts. Where it has more than two, the
-/// first word has this bit, and the rest of that word is the edge's index among such edges, whose triangles are in a
-/// list.
+/// The triangles of an edge are stored as a pair of words: each is 2 · triangle, + 1 if the triangle's winding runs
+/// from b to a. If an edge has one triangle, the second word refers to a triangle that never counts. If it has more
+/// than two, the first word has this bit, and its other bits are the edge's index among such edges, whose triangles are
+/// in a list.
 const uint kManyIncidences = 1u << 31;
 
 /// A triangle that floats cannot decide; `side` receives the host's answer.

@@ -9,7 +9,8 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Pairs { uvec2 pairs[]; };  // for every edge: see silhouette.shared.h
-layout(scalar, binding = 1) readonly buffer First { uint first[]; };   // for edges with more triangles, CSR
+layout(scalar, binding = 1) readonly buffer First { uint first[]; };   // list of the edges with more than two
+                                                                       // triangles, in CSR format
 layout(scalar, binding = 2) readonly buffer More { uint more[]; };
 layout(scalar, binding = 3) readonly buffer Sides { uint sides[]; };
 layout(scalar, binding = 4) writeonly buffer Multiplicities { int multiplicities[]; };

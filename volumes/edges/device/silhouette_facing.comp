@@ -5,9 +5,9 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// Computes the side of every triangle that one point is on, one lane for each triangle. A sign counts only beyond its
-// error bound (volumes/README.md, Bounds); a triangle whose sign is within the bound gets both bits and is listed for
-// the host. No branches.
+// Computes the side of every triangle that one point is on, one lane for each triangle. A sign is used only if it
+// exceeds its error bound (volumes/README.md, Bounds). A triangle whose sign is within the bound gets both bits and is
+// listed for the host. Has no branches.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Triangles { FacingTriangle triangles[]; };

@@ -5,8 +5,8 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// Writes the silhouettes of each block of edges, from the block's place on: in the order of edges, independent of the
-// device's schedule.
+// Writes the silhouettes of each block of edges, beginning at the block's place: in the order of edges, independent of
+// the device's schedule.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Multiplicities { int multiplicities[]; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Host of silhouette_*.comp: facings by floats with a bound, the rest by the exact predicate, then k_e and the list of
-// silhouettes.
+// Host of silhouette_*.comp: computes facings by floats with a bound, and the rest by the exact predicate; then k_e and
+// the list of silhouettes.
 
 #include "volumes/edges/device/silhouette_pass.hpp"
 
@@ -31,7 +31,7 @@ std::uint64_t groups_of(std::uint64_t lanes) {
 /// The triangles at edges (silhouette.shared.h).
 struct Incidences {
   std::vector<std::array<std::uint32_t, 2>> pairs;  // for every edge
-  std::vector<std::uint32_t> first{0}, more;        // for edges with more than two triangles, CSR
+  std::vector<std::uint32_t> first{0}, more;        // edges with more than two triangles, in CSR format
 };
 
 /// `nothing`: index of the triangle that never counts.
@@ -90,9 +90,9 @@ struct SilhouettePass::State {
   SilhouetteMesh mesh;
   std::optional<FacingUpload> upload;
   using BufferPointer = std::unique_ptr<render::Buffer>;
-  BufferPointer triangles, positions, pairs, first, more, ends;                    // buffers of the mesh
-  BufferPointer counted_buffer, sides, open, multiplicities, blocks, silhouettes;  // buffers of the point
-  std::vector<std::uint32_t> counted;                                              // content of its buffer
+  BufferPointer triangles, positions, pairs, first, more, ends;                    // made for each mesh
+  BufferPointer counted_buffer, sides, open, multiplicities, blocks, silhouettes;  // made for each point
+  std::vector<std::uint32_t> counted;                                              // content of counted_buffer
   std::uint32_t found = 0;
   std::uint32_t open_facings = 0;
   visibility::PassTimes times;
@@ -105,8 +105,8 @@ SilhouettePass::SilhouettePass(SilhouettePass&&) noexcept = default;
 SilhouettePass& SilhouettePass::operator=(SilhouettePass&&) noexcept = default;
 
 std::uint32_t SilhouettePass::most_triangles() const {
-  // A triangle's element is the largest; an edge's takes at most 8 bytes, and there are at most three edges for each
-  // triangle.
+  // The buffer of triangles is the largest: an edge takes at most 8 bytes in any buffer, and there are at most three
+  // edges for each triangle.
   static_assert(sizeof(gpu::FacingTriangle) >= 3 * sizeof(gpu::Silhouette) + sizeof(std::uint32_t));
   const std::uint64_t most = state_->most_bytes / sizeof(gpu::FacingTriangle);
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(most / 32 * 32, 1U << 28));

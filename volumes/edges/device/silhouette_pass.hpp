@@ -32,11 +32,12 @@ struct SilhouetteMesh {
 
 /// Computes mesh::silhouette_edges on the device, for one point after another. Facings come from floats with the bound
 /// of volumes/README.md (Bounds) and, where that does not suffice, from the host's exact predicate; k_e of every edge
-/// follows from them; then count, prefix sum, fill. So the list equals the host's, in the host's order, independent of
-/// the device and its schedule; its length is known before it is written.
+/// follows from them. The silhouettes are then counted, their places summed, and the list written. So its length is
+/// known before it is written, and it equals the host's list, in the host's order, independent of the device and its
+/// schedule.
 class SilhouettePass {
  public:
-  /// `most_bytes`: limit of any buffer; 0: the device's limit. Tests make it small.
+  /// `most_bytes`: limit of the size of any buffer; 0: the device's limit. Tests set a small limit.
   explicit SilhouettePass(const render::Device& device, std::uint64_t most_bytes = 0);
   ~SilhouettePass();
   SilhouettePass(SilhouettePass&&) noexcept;

@@ -5,8 +5,8 @@
 #include "volumes/edges/device/facing.shared.h"
 #include "volumes/edges/device/silhouette.shared.h"
 
-// Converts the counts of blocks to places: each the sum of those before it, and the total behind the last. One
-// workgroup.
+// Converts the blocks' counts to places: each place is the sum of the counts before it. The total follows the last one.
+// One workgroup.
 
 layout(local_size_x = kScanLanes) in;
 layout(scalar, binding = 0) buffer Blocks { uint blocks[]; };  // one more entry than there are blocks

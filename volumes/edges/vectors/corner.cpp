@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edge scatter on a processor: the depth at the light's corner, to which edges add their changes.
+// Edge scatter on a processor: the depth at the light's corner, to which edges add their changes. Bounds:
+// docs/edge-scatter.md.
 
 #include "visibility/certain_meeting.hpp"
 #include "volumes/edges/vectors/corner.hpp"
@@ -30,7 +31,7 @@ std::optional<bool> certainly_meets(const CornerInput& in, const std::array<glm:
   return visibility::certainly_meets(p, p + direction, corners, 0x1p-51 * static_cast<double>(in.grid.reach));
 }
 
-/// Returns the number of met triangles among those that float arithmetic leaves open.
+/// Returns how many triangles the segment meets among those that float arithmetic leaves open.
 std::uint32_t count_precisely(const CornerInput& in, std::size_t i, M which, Open& open) {
   std::uint32_t met = 0;
   for_each_lane(which, [&](std::size_t lane) {
@@ -84,7 +85,8 @@ std::uint32_t count_to_corner_here(const CornerInput& in, Open& open) {
         hn::AndNot(hn::Or(passes, same_bits(column(kTrianglePlane), bits(at.plane))), first_lanes(table.count - i));
     if (hn::AllFalse(d, near)) continue;
     const V w_most = hn::Max(a.w, hn::Max(b.w, c.w)), w_least = hn::Min(a.w, hn::Min(b.w, c.w));
-    // Height over p of the intersection of line and triangle's plane: the mean of the corners' heights, with weights f.
+    // Height over p of the point where the segment's line meets the triangle's plane: the mean of the corners' heights,
+    // with weights f.
     const V total = hn::Add(fab, hn::Add(fbc, fca));
     const V meeting = hn::Div(hn::Add(hn::Mul(fbc, a.w), hn::Add(hn::Mul(fca, b.w), hn::Mul(fab, c.w))), total);
     const V near_p = hn::Mul(set(16 * kRound), far),

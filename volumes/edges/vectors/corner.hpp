@@ -16,7 +16,7 @@ struct CornerInput {
   const TriangleTable& triangles;
   const ClusterSample& at;
   bool one_will_do;
-  std::uint32_t light_plane;  ///< its index: triangles in this plane are not between p and the light
+  std::uint32_t light_plane;  ///< index of the light's plane; triangles in it are not between p and the light
 };
 std::uint32_t count_to_corner(const CornerInput& input, Open& open);
 

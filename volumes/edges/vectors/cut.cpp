@@ -181,7 +181,7 @@ void CutEdges::restore() {
   if (!is_cut_) return;
   ends_.reset();
   plane_of_light_ = vectors::Cluster::kSeveral;
-  // In reverse: of an entry that was changed several times, the first saved value is the original.
+  // In reverse order: if an entry was changed several times, its first saved value is the original one.
   std::for_each(nodes_.rbegin(), nodes_.rend(), [&](const auto& node) { tree_.nodes[node.number].used = node.used; });
   std::for_each(leaves_.rbegin(), leaves_.rend(),
                 [&](const auto& leaf) { tree_.leaves[leaf.number].used = leaf.used; });

@@ -16,11 +16,11 @@
 /// Edge scatter on a processor: edges for lights whose plane cuts them. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// Make a tree of all records of a scene, none of them flat, guided by the tree over its triangles (large trees make
-/// leaves on demand, so the scene must stay unchanged), or a tree of any records.
+/// Make a tree of all records of a scene, none of them flat, guided by the tree over its triangles; or a tree of any
+/// records. Large trees make leaves on demand, so the scene must stay unchanged.
 vectors::WideEdgeTree wide_edges(EdgeRecords records, const visibility::TriangleTree& triangles, float scale);
 vectors::WideEdgeTree wide_edges(const std::vector<EdgeRecord>& records, float scale);
-/// Edges of the previous frame: leaves, if any exist, that have not moved are kept.
+/// Edges of the previous frame, if there are any: leaves that have not moved are kept.
 struct WideEdgesBefore {
   vectors::WideEdgeTree edges;
   LeafCones& cones;
@@ -47,9 +47,9 @@ class CutEdges {
   /// Returns the index of the plane (SceneFloats::plane) that contains the light, if triangles lie in it: these are not
   /// between any p and the light.
   [[nodiscard]] std::uint32_t plane_of_light() const { return plane_of_light_; }
-  /// Cuts the hierarchy. `without`: edges that do not belong to the casters.
+  /// Cuts the hierarchy. `without`: edges to exclude, since they do not belong to the casters.
   void cut(const CutInput& input, std::span<const EdgeSlot> without = {});
-  /// Excludes edges, until restore().
+  /// Excludes these edges until restore().
   void leave_out(std::span<const EdgeSlot> slots);
   void restore();
   /// Moves the hierarchy out, restored to its state before any cut.

@@ -39,7 +39,7 @@ struct DiskCells {
         fixed(1.2 * static_cast<double>(in.at.on_light.fixed) + rounding * glm::length(middle)) {}
 };
 
-/// Handles one caster in scalar code: one that has a corner within rounding of the plane, or whose plane contains p.
+/// Handles one caster in scalar code if it has a corner within rounding of the plane, or if its plane contains p.
 class SlowDiskCut {
  public:
   SlowDiskCut(const DiskCutInput& in, const vectors::DiskPlane& plane, double slab, double most)
@@ -60,8 +60,8 @@ class SlowDiskCut {
     if (std::ranges::min(height) > slab_ || std::ranges::max(height) < -slab_) return;
     glm::dvec2 from = place[0], to = from;
     const bool passes = std::ranges::min(height) < 0 && std::ranges::max(height) >= 0;
-    // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
-    // returns at `to`.
+    // Walks around the part of the caster in front of the plane, with the corners in order: the boundary leaves at
+    // `from`, and returns at `to`.
     for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
       if (!passes || (height[i] < 0) == (height[next] < 0)) continue;
       (height[i] < 0 ? from : to) = plane_.pass(corners[std::min(i, next)], corners[std::max(i, next)]);
@@ -91,8 +91,8 @@ class SlowDiskCut {
     const double share = squared > 0 ? std::clamp(glm::dot(x - from, direction) / squared, 0.0, 1.0) : 0.0;
     return glm::length(x - from - share * direction);
   }
-  /// Returns the largest distance of the part within the slab from the segment where the caster passes through the
-  /// plane.
+  /// Returns how far the caster's part within the slab around the plane is, at most, from the segment where the caster
+  /// passes through the plane.
   [[nodiscard]] double around_cut(const std::array<glm::dvec2, 3>& place, const std::array<double, 3>& height,
                                   const glm::dvec2& from, const glm::dvec2& to) const {
     double wide = 0;
@@ -190,8 +190,8 @@ class FastDiskCuts {
   }
 
  private:
-  static constexpr std::size_t kMost = 128;  // entries that wait for a next step
-  /// padded for a vector beyond the entries
+  static constexpr std::size_t kMost = 128;  // entries that wait for the next step
+  /// Padded, since vectors may extend beyond the last entry.
   using Column = std::array<double, kMost + 2 * hn::MaxLanes(Doubles())>;
   /// Indices of casters.
   struct Waiting {
@@ -210,13 +210,14 @@ class FastDiskCuts {
       return {load(0), load(1), load(2)};
     }
   };
-  /// Returns a vector of entries; lanes beyond the last one are the first of all casters.
+  /// Returns a vector of entries; lanes beyond the last entry get index 0, the first of all casters.
   static Double some(const Waiting& waiting, std::size_t first) {
     const Doubles d;
     return hn::IfThenElseZero(hn::FirstN(d, waiting.count - first), hn::LoadU(d, &waiting.numbers[first]));
   }
 
-  /// Returns the distance of light samples from the plane: stored ones are rounded, and it is computed in double.
+  /// Returns the largest distance of light samples from the plane: stored samples are rounded, and the plane is
+  /// computed in double.
   static double thin_slab(const LightGrid::Cones& cones) {
     return 2 * static_cast<double>(cones.deviation) + 0x1p-40 * cones.reach;
   }
@@ -225,7 +226,7 @@ class FastDiskCuts {
     return hn::GatherIndex(Doubles(), rows_ + vectors::NearCasters::kPlane,
                            hn::ConvertTo(hn::RebindToSigned<Doubles>(), begins));
   }
-  /// Computes as DiskPlane does.
+  /// Coordinates of a corner, computed as DiskPlane does.
   struct Corner {
     Double3 direction;
     Double height, s, t;
@@ -236,7 +237,7 @@ class FastDiskCuts {
   }
   struct Passing {
     Double s, t;
-    Double wide;  // largest distance of the part within the slab
+    Double wide;  // largest distance of the caster's part within the slab
   };
   [[nodiscard]] Passing pass(const Corner& a, const Corner& b) const {
     const Double across = hn::Sub(a.height, b.height), share = hn::Div(a.height, across);
@@ -298,8 +299,8 @@ class FastDiskCuts {
     const Which sure = hn::And(hn::Gt(nearest, slab), hn::Gt(hn::Abs(side), unsure));
     add_slowly(which, hn::AndNot(sure, used));
     if (hn::AllFalse(d, hn::And(used, sure))) return;
-    // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
-    // returns at `to`.
+    // Walks around the part of the caster in front of the plane, with the corners in order: the boundary leaves at
+    // `from`, and returns at `to`.
     const Passing ab = pass(a, b), bc = pass(b, c), ac = pass(a, c);
     const Which a_before = hn::Lt(a.height, zero), b_before = hn::Lt(b.height, zero), c_before = hn::Lt(c.height, zero);
     const Which from_ab = hn::AndNot(b_before, a_before), from_bc = hn::AndNot(c_before, b_before),
@@ -364,8 +365,8 @@ class FastDiskCuts {
   Open& open_;
   CrossingTable& out_;
   Waiting spheres_, meeting_;
-  Corners corners_;     // of those that wait as spheres
-  Corners directions_;  // vectors from p, of those that meet the plane
+  Corners corners_;     // corners of the casters that wait in spheres_
+  Corners directions_;  // vectors from p to the corners of casters that meet the plane
 };
 
 void add_disk_cuts_here(const DiskCutInput& in, OpenJudge& judge, Open& open, CrossingTable& out) {

@@ -7,8 +7,8 @@
 
 #include <array>
 
-/// Cuts of casters by a sphere's disk, as one view sample sees it: only objects in front of the disk hide light
-/// samples, so each caster that passes through it has one more edge there. docs/edge-scatter.md, "Ends". Inside
+/// Cuts of casters by a sphere's disk, as one view sample sees it. Only objects in front of the disk hide light
+/// samples, so each caster that passes through the disk has one more edge there. docs/edge-scatter.md, "Ends". Inside
 /// volumes/ only.
 namespace penumbra::volumes {
 
@@ -16,11 +16,11 @@ struct DiskCutInput {
   const LightGrid& grid;
   const ClusterSample& at;
 };
-/// Adds these edges (kEdge: kDiskCut) to a table of crossings. All light samples within their errors are open. Edges
-/// with k = 0 cut nothing, but are added since rounding may give another result.
+/// Adds these edges (kEdge: kDiskCut) to a table of crossings. All light samples within an edge's error are open. Edges
+/// with k = 0 change nothing, but are added, too, since rounding may hide another k.
 void add_disk_cuts(const DiskCutInput& input, OpenJudge& judge, Open& open, CrossingTable& out);
 
-/// Ends of a mesh's edge that are behind the disk, and the crossing.
+/// Which ends of a mesh's edge are behind the disk, and where the edge crosses its plane.
 struct PassingEdge {
   std::array<bool, 2> behind{};
   glm::vec2 place{0};  ///< place of the crossing, if there is one

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor: selects, for a few neighbouring view samples together, those of their cluster's edges
-// and triangles that affect them.
+// and triangles that affect them. Bounds: docs/edge-scatter.md.
 
 #include "volumes/edges/vectors/group.hpp"
 
@@ -36,7 +36,7 @@ struct GroupBounds {
   glm::vec2 lean_low{0}, lean_high{0};
   float height_high = 0, far = 0, per_ray = 0, per_reach = 0, per_foot = 0, fixed = 0, per_lean = 0;
   LightGrid::Range window;
-  glm::vec3 turned{0};  // smallest and largest ratios of a direction's coordinates to its height over p on the light
+  glm::vec3 turned{0};  // bounds of the third row of ClusterSample::turn: largest |x|, largest |y|, smallest z
 };
 
 GroupBounds bounds_of(std::span<const ClusterSample> samples) {
@@ -72,7 +72,7 @@ GroupBounds bounds_of(std::span<const ClusterSample> samples) {
   return g;
 }
 
-/// Bounds of the place of an edge's end for any view sample of the group.
+/// Bounds of the place where an edge's end appears from any view sample of the group.
 struct Range {
   V low_x, low_y, high_x, high_y, error;
   M bounded;
@@ -114,7 +114,7 @@ class GroupFilter {
     }
   }
 
-  /// Selects triangles that the segments from the group's p to the light's corner may meet.
+  /// Selects triangles that segments from a p of the group to the light's corner may meet.
   void triangles(TriangleTable& near) const {
     near.count = 0;
     near.reserve(in_.triangles.count);
@@ -184,9 +184,9 @@ class GroupFilter {
         hn::Or(hn::And(s.none, t.none), hn::Or(hn::And(s.positive, t.negative), hn::And(s.negative, t.positive))));
   }
 
-  /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h): linear in both, so
-  /// the corners bound it. X − foot and H − h are differences taken from the cluster's middle: h / (H − h) may be
-  /// thousands, and the feet are rounded over the light.
+  /// With h the height of x over the light's plane and H that of p, X' = X + (X − foot) h / (H − h). It is linear in X
+  /// − foot and in h / (H − h), so the corners of both ranges bound it. X − foot and H − h are computed as differences
+  /// from the cluster's middle, because h / (H − h) may be thousands, and the feet on the light are rounded.
   [[nodiscard]] HWY_INLINE Range range_of(std::size_t first, std::size_t i) const {
     const V x = hn::Add(column(first, i), set(foot_.x)), y = hn::Add(column(first + 1, i), set(foot_.y));
     Range r;
@@ -195,7 +195,8 @@ class GroupFilter {
     const V w_low = hn::Sub(set(g_.in_grid.low.z), below), w_high = hn::Sub(set(g_.in_grid.high.z), below);
     r.bounded = hn::And(hn::Gt(w_low, hn::Mul(set(0.25F), w_high)), hn::Gt(w_low, set(256 * kRound * in_.grid.reach)));
     if (in_.grid.cones) {
-      // A group that sees the light from the side has its own height.
+      // A view sample's own axis may differ from the grid's: `own` is a lower bound of the height along any of these
+      // axes.
       const auto aside = [&](std::size_t axis) {
         const auto j = static_cast<glm::length_t>(axis);
         const V at = column(first + axis, i);
@@ -226,7 +227,8 @@ class GroupFilter {
     if (in_.grid.cut_reach > 0)  // see (bound cut)
       far = hn::Add(far, hn::IfThenElseZero(hn::Lt(r.level, set(2 * near_cut(in_.grid))), set(cut_far(in_.grid))));
     const V direction = hn::Mul(far, inverse);
-    // (bound X), enlarged by a tenth: the differences of height are computed differently than those of view samples
+    // (bound X), enlarged by a tenth, since these height differences are computed differently than those of view
+    // samples
     r.error = hn::Mul(set(1.1F), hn::MulAdd(direction, hn::MulAdd(set(g_.per_reach), foot, set(g_.per_ray)),
                                             hn::MulAdd(set(g_.per_foot), foot, set(g_.fixed))));
     const V around = hn::Mul(set(4), r.error);

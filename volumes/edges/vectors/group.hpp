@@ -10,8 +10,7 @@
 #include <cstdint>
 #include <span>
 
-/// Selection, for a few neighbouring view samples together, of the entries of their cluster's lists that affect them.
-/// Inside volumes/ only.
+/// Selects, from the lists of a cluster, the entries that affect a few neighbouring view samples. Inside volumes/ only.
 namespace penumbra::volumes {
 
 /// A cluster of view samples with the edges and triangles that may affect it.
@@ -24,15 +23,15 @@ struct ClusterInput {
   std::span<const ClusterSample> samples;
   const EdgeTable& edges;
   const TriangleTable& triangles;
-  std::size_t group;          ///< view samples that select edges together
+  std::size_t group;          ///< number of view samples that select edges together
   bool exact_area;            ///< computes an area of the light instead of light samples
-  const CutEnds* ends;        ///< ends of edges of the tree (WideEdges::cut); null: none is cut
+  const CutEnds* ends;        ///< cut ends of the tree's edges (WideEdges::cut); null: no edge is cut
   std::uint32_t light_plane;  ///< CutEdges::plane_of_light
 
-  /// Returns whether edges matter that cross no light row.
+  /// Returns whether edges that cross no light row matter, too.
   [[nodiscard]] bool between_rows() const { return exact_area || grid.tiles; }
 };
-/// Sets the initial open light samples of a view sample: those that a triangle touches.
+/// Sets the light samples of a view sample that are open from the start: those that a triangle touches.
 void reset_open(const LightGrid& grid, const visibility::LightTouch& touch, const GridSample& at, Open& open);
 /// Edges and triangles that affect a group of view samples. Settled edges stay well above all of its p.
 struct GroupLists {

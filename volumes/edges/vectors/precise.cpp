@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One edge for one view sample in scalar code, with the operations of the vector code, and its exact decisions.
-// docs/edge-scatter.md derives the bounds.
+// Handles one edge for one view sample in scalar code, with the operations of the vector code, and decides exactly
+// where rounding matters. docs/edge-scatter.md derives the bounds.
 
 #include "volumes/edges/vectors/precise.hpp"
 
@@ -16,7 +16,8 @@
 namespace penumbra::volumes {
 namespace {
 
-/// A vector from p: across, along, and up to the light. Its place on the light is foot + height / w (x, y).
+/// A vector from p: its components across, along and up to the light. Its place on the light is foot + height / w (x,
+/// y).
 using Direction = glm::vec3;
 
 glm::vec2 appears(const Placing& place, const Direction& direction) {
@@ -38,8 +39,8 @@ float error_of(const Placing& place, float far, float w, float from_foot) {
   return far / w * (place.per_ray + place.per_reach * from_foot) + place.per_foot * from_foot + place.fixed;
 }
 
-/// Returns the length of an end's vector for the bounds: includes the end's error if the light's plane cut it. (bound
-/// cut)
+/// Returns the length of an end's vector for use in the bounds. If the light's plane may have cut the end, the length
+/// includes the end's error. (bound cut)
 float far_of(const LightGrid& grid, const Placing& place, const Direction& direction, float far) {
   return place.height - direction.z < near_cut(grid) ? far + cut_far(grid) : far;
 }
@@ -56,8 +57,8 @@ class Marks {
   }
   void corner() { open_.corner = true; }
 
-  /// Marks open samples where the change at (row, x) may be anywhere within `error` of x: the nearest light sample, if
-  /// it is that close; the whole row, if others are, too.
+  /// Marks the light samples left open by a change that may be anywhere within `error` of x in this row: the nearest
+  /// sample, if it is that close; or the whole row, if other samples are that close, too.
   void near(float row, float x, float error) {
     if (row < 0 || row >= static_cast<float>(grid_.rows)) return;
     const auto columns = static_cast<float>(grid_.columns);
@@ -96,7 +97,7 @@ float row_at_least(const LightGrid& grid, float y) {
   return std::clamp(std::ceil(y), 0.0F, static_cast<float>(grid.rows));
 }
 
-/// Returns the first light sample of a row that the edge is left of: between `lowest` and one after `highest`.
+/// Returns the first light sample of a row that is right of the edge, between `lowest` and one after `highest`.
 float first_right_of(const PreciseInput& in, float row, float lowest, float highest, bool runs_up, Marks& marks) {
   float first = lowest;
   for (; first <= highest; ++first) {
@@ -105,7 +106,7 @@ float first_right_of(const PreciseInput& in, float row, float lowest, float high
     const int side = side_of_direction(in, glm::dvec3(in.of.grid.points[sample]) - glm::dvec3(in.at.p));
     if (side == 0) {
       marks.sample(row, first);
-    } else if ((side < 0) == runs_up) {  // right of an edge that runs upward
+    } else if ((side < 0) == runs_up) {  // the sample is right of the edge
       break;
     }
   }
@@ -120,8 +121,8 @@ float error_of_rows(const LightGrid& grid, const ProjectedEdge& s) {
          8 * kRound * (grid.half_cells.x + std::abs(s.near.x));
 }
 
-/// Returns whether the edge may pass the light's corner on either side. The depth there is counted in double, which may
-/// be more precise.
+/// Returns whether the edge may pass the light's corner on either side. The corner's own depth is counted in double,
+/// which may be more precise.
 bool passes_corner(const LightGrid& grid, const ProjectedEdge& s) {
   const float around = s.error_near + s.error_far;
   if (s.low.x - around > -0.5F || s.high.x + around < -0.5F) return false;
@@ -153,7 +154,7 @@ float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, c
     const float computed = std::max(std::ceil(column), 0.0F);
     const bool on_light = x >= -0.5F;  // else the crossing is included in the depth at the left side
     if (on_light == upper_right) from = std::min(from, row);
-    // Light samples that may be on either side of the edge.
+    // The light samples from `lowest` to `highest` may be on either side of the edge.
     const float lowest = std::max(std::ceil(column - error), 0.0F);
     const float highest = std::min(std::floor(column + error), columns - 1);
     float first = on_light ? computed : 0;
@@ -176,7 +177,7 @@ float cross_rows(const PreciseInput& in, const ProjectedEdge& s, Counter jump, c
   return from;
 }
 
-/// Adds the crossing of the light's left side: above or below the corner.
+/// Adds the change where the edge crosses the light's left side, above or below the corner.
 template <typename Counter>
 void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from, Counter up,
                      const Changes<Counter>& changes, Marks& marks) {
@@ -189,7 +190,7 @@ void cross_left_side(const PreciseInput& in, const ProjectedEdge& s, float from,
                       8 * kRound * (grid.half_cells.y + std::abs(s.near.y));
   const float y = std::clamp(s.near.y + (-0.5F - s.near.x) * inverse, s.low.y, s.high.y);
   if (std::abs(y + 0.5F) < error) marks.corner();
-  // Next to light rows, these decide more precisely than the division: y is used only below the first of them.
+  // Next to light rows, `from` decides more precisely than the division: y is used only below the first row.
   const bool over_corner = from > 0 || y > -0.5F;
   if (in.projected || !over_corner || from >= static_cast<float>(grid.rows)) return;
   Counter& row = changes.left[static_cast<std::size_t>(from)];
@@ -211,12 +212,12 @@ std::array<glm::dvec3, 2> ends_of(const ClusterInput& in, std::size_t edge) {
 struct WindowPart {
   Direction start, end;
   float far_start, far_end;
-  bool passes_at_start = false, passes_at_end = false;  ///< crosses a sphere's disk there
+  bool passes_at_start = false, passes_at_end = false;  ///< the edge crosses a sphere's disk there
   bool is_empty = false;
 };
 
-/// Clips an edge to the window. Widened by the lift, so that rounding cannot put an edge at p's own height below the
-/// window.
+/// Clips an edge to the window, which is widened by the lift, so that rounding cannot put an edge at p's own height
+/// below the window.
 WindowPart cut_to_window(const LightGrid& grid, const ClusterSample& at, const Direction& a, const Direction& b,
                          float far_a, float far_b, const PassingEdge& passing) {
   const Placing& place = at.on_light;
@@ -252,8 +253,9 @@ std::optional<float> exact_multiplicity(const EdgeTable& edges, std::size_t edge
     const auto plane = std::bit_cast<std::uint32_t>(edges[first + kPlane1 - kNormal1X][edge]);
     if (edges[first + kOffsetError1 - kNormal1X][edge] < 0 || plane == at.plane) continue;
     const glm::dvec3 n(edges[first][edge], edges[first + 1][edge], edges[first + 2][edge]);
-    const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane's index is that of a triangle in it
-    const double side = glm::dot(n, towards);  // their cosine is ±1 to a thousandth, unless one of them is unknown
+    const glm::dvec3 towards = judge.normal_towards(at, plane);  // a plane has the index of a triangle in it
+    const double side = glm::dot(n, towards);  // the cosine between both is ±1 to a thousandth, unless one of them is
+                                               // unknown
     if (!(std::abs(side) > 0.5 * glm::length(n) * glm::length(towards))) return std::nullopt;
     k += side > 0 ? 1.0F : -1.0F;
   }
@@ -267,7 +269,7 @@ int side_of_direction(const PreciseInput& in, const glm::dvec3& l) {
   // Error bound as in visibility::certainly_meets.
   const double error = 0x1p-46 * glm::length(l) * glm::length(a) * glm::length(b);
   if (std::abs(side) <= error) return 0;
-  // The grid is mirrored as seen from above, where the light is.
+  // Seen from above, where the light is, the grid is mirrored.
   return (side > 0) == (in.of.grid.side < 0) ? 1 : -1;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Signed edges on a processor: places of a group's edges as one of its view samples sees them. Inside volumes/ only.
+// Bounds: docs/edge-scatter.md.
 
 #if defined(PENUMBRA_VOLUMES_PROJECTION_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_PROJECTION_INL_HPP
@@ -42,7 +43,7 @@ struct Multiplicity {
   return m;
 }
 
-/// Edges that vectors leave to the caller: `which` of those from `first`.
+/// Edges that vectors leave to the caller: those in `which`, a mask of a vector that begins at `first`.
 struct SpecialEdges {
   const GroupTable& table;
   std::size_t first;
@@ -114,7 +115,8 @@ class Projection {
                   hn::AndNot(open, live));
   }
 
-  /// Projects edges that may come near p's height, or go below: clipped as in scatter_precisely. (bound window)
+  /// Projects edges that may come near p's height, or below it. They are clipped as in scatter_precisely. (bound
+  /// window)
   template <typename Special>
   void unsettled(std::size_t i, Special& special) {
     const D d;
@@ -145,7 +147,7 @@ class Projection {
       keep_inside(hn::Sub(wide_a, xa), hn::Sub(wide_b, xb));
       keep_inside(hn::Add(wide_a, xa), hn::Add(wide_b, xb));
     }
-    // Clips parts behind a sphere's disk. (bound ends)
+    // Clips away parts behind a sphere's disk. (bound ends)
     M at_end = hn::FirstN(d, 0);
     if (at_.meets_end) {
       const V slab = set(static_cast<float>(vectors::slab_of(*grid.cones)) * 1.0001F), end = set(place_.height);
@@ -175,7 +177,7 @@ class Projection {
   }
 
   [[nodiscard]] V far_of(V edge) const { return hn::GatherIndex(D(), in_.edges[kFar], hn::BitCast(I(), edge)); }
-  /// Returns the length with the error of a cut. (bound cut)
+  /// Returns the length of an end's vector plus the error of a cut. (bound cut)
   [[nodiscard]] V with_cut(V far, V w) const {
     if (in_.grid.cut_reach == 0) return far;
     const M may_be_cut = hn::Lt(hn::Sub(set(place_.height), w), set(near_cut(in_.grid)));
@@ -189,8 +191,8 @@ class Projection {
                       hn::MulAdd(set(place_.per_foot), foot, set(place_.fixed)));
   }
 
-  /// Returns edges not completely in a corner of the grid to the right of all light samples; the samples of a disk
-  /// leave its corners empty.
+  /// Returns the edges that some light sample may be right of. Excludes edges that lie completely in a corner of the
+  /// grid, right of all light samples: the samples of a disk leave the grid's corners empty.
   [[nodiscard]] M left_of_a_sample(V low_x, V low_y, V high_y) const {
     const float rounding = 8 * kRound * (in_.grid.half_cells.x + in_.grid.half_cells.y);
     const M before = hn::And(hn::Le(hn::Add(low_x, low_y), set(in_.grid.tiles->most_sum + rounding)),

@@ -59,8 +59,9 @@ SceneEdges::Made SceneEdges::make(const SceneMesh& mesh) {
   return made;
 }
 
-/// Coplanar triangles take their plane from the largest of them (plane_of): if that one belongs to a body, the others
-/// have another plane without it. A plane's largest triangle determines its owner if the plane is not shared.
+/// Coplanar triangles take their plane from the largest of them (plane_of). If that triangle belongs to a body, the
+/// others have another plane without the body. A plane's owner is that of its largest triangle, provided that the plane
+/// is not shared.
 void SceneEdges::find_bodies(const SceneMesh& mesh) {
   bodies_.clear();
   const std::vector<std::int32_t>& emits = mesh.scene.emits;
@@ -76,7 +77,7 @@ void SceneEdges::find_bodies(const SceneMesh& mesh) {
     }
   }
   const vectors::WideLeaves<vectors::WideEdges>& leaves = edges_.tree().leaves;
-  // makes all leaves, on all cores
+  // This loop makes all leaves, on all cores.
   for_each_index(leaves.size(), [&](std::size_t i) { static_cast<void>(leaves[i]); });
   for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) {
     for (std::uint32_t used = leaves[leaf].used; used != 0; used &= used - 1) {

@@ -29,7 +29,8 @@ class SceneEdges {
 
   enum class Made : std::uint8_t {
     built,
-    tree_built,  ///< the same edges, but some that were flat are not, or the old hierarchy fitted badly
+    tree_built,  ///< the edges are the same, but some that were flat are not flat now, or the old hierarchy fitted
+                 ///< badly
     refit,
   };
   Made make(const SceneMesh& mesh);
@@ -54,7 +55,7 @@ class SceneEdges {
   // Kept if more frames are expected:
   std::optional<EdgeRecords> records_;
   visibility::TriangleTree tree_;
-  UnsetList<NormalCone> cones_;  // cones of its leaves
+  UnsetList<NormalCone> cones_;  // cones of tree_'s leaves
   double built_cost_ = 0;
   float scale_ = 0;
 };

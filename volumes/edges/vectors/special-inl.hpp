@@ -21,8 +21,8 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
-/// Calls visit(edge, k) for each edge whose multiplicity is certain, by exact predicates if needed; any other one opens
-/// the view sample.
+/// Calls visit(edge, k) for each edge whose multiplicity is certain, by exact predicates if needed. An edge whose
+/// multiplicity stays uncertain opens the view sample.
 template <typename Visit>
 [[maybe_unused]] void for_each_sure(const ClusterInput& in, const ClusterSample& at, const SpecialEdges& edges,
                                     OpenJudge& judge, Open& view_sample, Visit visit) {
@@ -61,4 +61,4 @@ template <typename Visit>
 }  // namespace penumbra::volumes::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // once a target
+#endif  // once for each target

@@ -14,7 +14,7 @@
 /// Signed edges on a processor: tables passed between stages. Inside volumes/ only.
 namespace penumbra::volumes {
 
-// Names from engines/vectors/ that these tables consist of.
+// Names from engines/vectors/ that the tables are made of.
 using vectors::Cluster;
 using vectors::ClusterSample;
 using vectors::count_edge_leaves;
@@ -45,8 +45,8 @@ using vectors::WideTriangleTree;
 using enum vectors::EdgeField;
 using enum vectors::TriangleField;
 
-/// Columns of an edge that affects a group of view samples: the first 18 of EdgeField, then an error bound of its ends'
-/// places (for a sphere or sun: kFar), and its row in the EdgeTable (bits).
+/// Columns of an edge that affects a group of view samples: the first 18 of EdgeField, then the error bound of the
+/// places of its ends (for a sphere or sun: kFar), and its row in the EdgeTable (as bits).
 enum GroupField : std::size_t { kGroupError = kPlane2 + 1, kGroupEdge, kGroupFields };
 using GroupTable = Table<kGroupFields>;
 

@@ -11,8 +11,8 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Number of leaves of triangles between a region and the light's corner from which on neighbouring pixels see
-/// different edges.
+/// Number of leaves of triangles between a region and the light's corner above which neighbouring pixels see different
+/// edges.
 constexpr std::size_t kDense = 1024;
 constexpr std::size_t kEdgeGroup = 16, kDenseEdgeGroup = 8;  // view samples in a group
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
@@ -37,7 +37,7 @@ void VectorEdges::prepare_mesh(const visibility::SceneFloats& scene) {
   const SceneEdges::Made made = whole_.make({scene, tree(), sides_.casters(), scale()});
   if (made == SceneEdges::Made::built) count_for_mesh("edgesBuilt");
   count_for_mesh(made == SceneEdges::Made::refit ? "edgesRefit" : "edgeTreesBuilt");
-  prepare_triangles();  // after the edges, which take the most memory temporarily
+  prepare_triangles();  // made after the edges, which temporarily take the most memory
   without_body_.reset();
   front_ = &whole_.edges();
 }
@@ -68,7 +68,7 @@ bool VectorEdges::prepare_casters() {
     front_->leave_out(left_out);
   touch_ = exact_area_ || !visibility::is_planar(light().kind) ? visibility::LightTouch()
                                                                : visibility::find_touch(scene(), tree(), light());
-  return edges.front.has_value() && !exact_area_;  // for an exact area, edges stay whole
+  return edges.front.has_value() && !exact_area_;  // for an exact area, cuts do not round the stored ends
 }
 
 vectors::Blocks VectorEdges::begin_region(const LightGrid& grid, const Cluster& all) {

@@ -42,14 +42,14 @@ class VectorEdges : public vectors::MaskMethod {
   struct Roots {
     const std::vector<std::uint32_t>&edges, &triangles;
   };
-  /// Finds all edges of a cluster (of several view samples); returns false if a search for each view sample is cheaper.
+  /// Finds all edges of a cluster of several view samples. Returns false if a search for each view sample is cheaper.
   bool find_edges_together(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                            const Roots& roots);
   void do_each_alone(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                      const Roots& roots, OpenJudge& judge, std::span<SampleMask> masks);
   void do_list(const LightGrid& grid, std::span<const GridSample> view_samples, const Cluster& cluster,
                OpenJudge& judge, std::span<SampleMask> masks);
-  /// Returns whether edges can be skipped that cross neither a row of light samples nor the light's left side.
+  /// Returns whether edges that cross neither a row of light samples nor the light's left side can be skipped.
   [[nodiscard]] bool skips_gaps(const LightGrid& grid) const { return !exact_area_ && !grid.tiles; }
   [[nodiscard]] static bool at_disk(const LightGrid& grid) { return grid.cones && grid.cones->near != nullptr; }
   [[nodiscard]] const CutEdges& cut_edges(const LightGrid& grid) const {
@@ -71,8 +71,9 @@ class VectorEdges : public vectors::MaskMethod {
   };
   /// Casters of the last light whose body shares edges or planes with other casters.
   std::optional<WithoutBody> without_body_;
-  CutEdges* front_ = &whole_.edges();  // one of the above
-  CutEdges back_;                      // a copy, if the light's plane cuts and the light emits to both sides
+  CutEdges* front_ = &whole_.edges();  // the edges of whole_ or without_body_
+  CutEdges back_;                      // a copy of *front_, if the light's plane cuts edges and the light emits to both
+                                       // sides
 
  protected:
   /// Returns the roots of the traversal for a cluster's edges: subtrees that contain all edges that may affect it.

@@ -12,8 +12,7 @@
 
 namespace penumbra::volumes {
 
-/// The exact areas of the light prepared last, made when the first view sample needs them: most scenes have none that
-/// does.
+/// The exact areas of the light prepared last, made when the first view sample needs them. In most scenes none does.
 class AreasOnDemand {
  public:
   /// All arguments must outlive this object's use.

@@ -44,7 +44,7 @@ class VectorEdgeScatter final : public VectorEdges {
   tbb::enumerable_thread_specific<PointScratch> points_;
 };
 
-/// rows=exact: fractions of the light, and their form factors on request.
+/// rows=exact: visible fractions of the light, and form factors on request.
 class VectorEdgeRows final : public VectorEdges {
  public:
   explicit VectorEdgeRows(visibility::MethodDescription given) : VectorEdges(std::move(given), "scatter edges", true) {}
@@ -71,7 +71,7 @@ class VectorEdgeRows final : public VectorEdges {
     PENUMBRA_ASSERT(false, "{} has no masks with rows=exact", description().name);
   }
   void read_visibility(std::span<float> visibility) override {
-    // Fully visible or hidden, where no fraction was computed.
+    // Pixels without a computed fraction are fully visible or hidden.
     for (std::size_t i = 0; i < visibility.size(); ++i) visibility[i] = share_of(i);
   }
   void read_form_factors(std::span<glm::dvec3> form_factors) override {
@@ -95,7 +95,7 @@ class VectorEdgeRows final : public VectorEdges {
   [[nodiscard]] bool is_hard() const { return light().sun && light().sun->tangent == 0; }
   /// Returns a grid of cells independent of light samples.
   [[nodiscard]] GridShape grid_shape() const override {
-    constexpr std::uint32_t kCells = 16;  // cells a side
+    constexpr std::uint32_t kCells = 16;  // cells along each side
     if (is_parallelogram(light().kind)) return {visibility::make_device_light(light(), scale()), true, kCells, kCells};
     const double to_scale = scale();
     const WindowAxes axes = axes_of(light(), window_);
@@ -104,7 +104,7 @@ class VectorEdgeRows final : public VectorEdges {
     frame.center = glm::vec3(corner + u + v);
     frame.u = glm::vec3(u);
     frame.v = glm::vec3(v);
-    // Three roundings to float.
+    // The deviation is that of three roundings to float.
     const glm::dvec3 largest = glm::abs(corner) + 2.0 * glm::abs(u) + 2.0 * glm::abs(v);
     frame.deviation = static_cast<float>(0x1p-22 * (largest.x + largest.y + largest.z));
     if (!is_polygon(light().kind)) return {frame, true, kCells, kCells};
@@ -200,9 +200,9 @@ class VectorEdgeRows final : public VectorEdges {
   }
 
   AreasOnDemand areas_;
-  std::atomic<std::uint64_t> unproven_ = 0;     // view samples whose fraction double could not prove
-  std::optional<LightRegion> region_;           // of the light
-  std::optional<areas::TextureBlocks> blocks_;  // of its texture
+  std::atomic<std::uint64_t> unproven_ = 0;     // number of view samples whose fraction double could not prove
+  std::optional<LightRegion> region_;           // region of the light
+  std::optional<areas::TextureBlocks> blocks_;  // blocks of the light's texture
   std::vector<std::optional<float>> shares_;    // for the tile; nullopt: the light is behind, or below the horizon
   bool wants_radiance_ = false;                 // form factors are requested after each tile
   bool finds_radiance_ = false;                 // form factors are computed together with fractions

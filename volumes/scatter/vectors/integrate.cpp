@@ -31,7 +31,7 @@ HWY_BEFORE_NAMESPACE();
 namespace penumbra::volumes::HWY_NAMESPACE {
 namespace {
 
-/// Returns the depth at the light's corner, from that at a place away from all edges, counted by exact predicates.
+/// Returns the depth at the light's corner, from the depth at a place away from all edges, counted by exact predicates.
 std::optional<std::int32_t> depth_by_other_place(const ClusterInput& in, const LightWindow& window, const RowSum& rows,
                                                  const GridSample& at, OpenJudge& judge) {
   constexpr int kTries = 64;
@@ -46,7 +46,7 @@ std::optional<std::int32_t> depth_by_other_place(const ClusterInput& in, const L
   return std::nullopt;
 }
 
-/// Returns the depth at the corner for a sphere or sun, from that at one of the view sample's light samples.
+/// Returns the depth at the corner for a sphere or sun, from the depth at one of the view sample's light samples.
 std::optional<std::int32_t> depth_by_light_sample(const IntegralInput& in, const RowSum& rows, const GridSample& at,
                                                   OpenJudge& judge) {
   constexpr std::size_t kTries = 64;
@@ -89,7 +89,7 @@ std::optional<double> share_of(const IntegralInput& input, EdgeScratch& scratch,
         open));
   }
   CrossingTable& crossing = scratch.crossing;
-  // The vectors only select; edges that they cannot place are included.
+  // The vectors only select edges; those that they cannot place are included.
   const auto special = [&](const SpecialEdges& edges) {
     for_each_lane(edges.which, [&](std::size_t lane) {
       crossing[kK][crossing.count] = kUnknown;
@@ -125,7 +125,7 @@ class PartlyLit {
         cells_(2.0 * glm::dvec2(in.cluster.grid.half_cells)),
         is_plain_(!in.texture && !visibility::is_round(in.light.kind)) {}
 
-  /// Returns the form factor; nullopt if double cannot prove it, of a sky whose edges pass in front of what is bright.
+  /// Returns the form factor; nullopt if double cannot prove it for a sky whose edges pass in front of bright parts.
   std::optional<glm::dvec3> form_factor(const GridSample& at, const Rows& rows) {
     const std::vector<Trapezoid>& parts = rows.parts;
     const visibility::UnshadowedLight unshadowed(in_.light, in_.samples.p[at.pixel], in_.samples.n[at.pixel]);
@@ -133,7 +133,7 @@ class PartlyLit {
       visibility::SkyPart sky(in_.light);
       for (const Trapezoid& part : parts) sky.add(corners_of(part), visibility::SkyPart::Level::t);
       const glm::dvec3 form_factor = sky.take_form_factor(unshadowed.normal());
-      // Sides are off by less than this angle, and whole faces have 4 times the mean or less.
+      // Sides are off by less than this angle; the luminance of a whole face is 4 times the mean or less.
       const double off = rows.sum.side_error() * 2 / std::min(cells_.x, cells_.y);
       if (!(off * sky.exposure() <= 4 * kProven * in_.light.dome->sky->mean_luminance())) return std::nullopt;
       return glm::max(form_factor, glm::dvec3(0));

@@ -12,7 +12,7 @@
 /// Measure of a part of a light's window: rows=exact of edge scatter. Inside volumes/ only.
 namespace penumbra::volumes {
 
-/// A part of the window between two of its rows: x of its two sides at both, in cells.
+/// A part of the window between two heights: x of its left and right side at both heights, in cells.
 struct Trapezoid {
   struct Row {
     double y = 0, left = 0, right = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edge scatter on a processor for light samples that are not in rows: an edge is tested against the tiles that it
-// passes, a vector of light samples at a time; for all others of a row to its right one number gives the change.
-// docs/edge-scatter.md, "Light samples anywhere".
+// passes, a vector of light samples at a time. All other light samples of a row that are right of the edge change by
+// the same number. docs/edge-scatter.md, "Light samples anywhere".
 
 #include "volumes/scatter/vectors/points.hpp"
 
@@ -44,8 +44,8 @@ std::uint32_t bits_of(TileM which) {
   return word;
 }
 
-/// Changes of the depth from the light's corner, minus `corner`: up the light's left side to a row's lowest light
-/// sample, from there to the right to a tile, and within the tile to each light sample.
+/// Changes of the depth along the path from the light's corner to a light sample, without `corner`: up the light's left
+/// side to a row's lowest light sample, from there to the right to a tile, and within the tile to each light sample.
 struct PointChanges {
   std::int32_t* rows;   // for each row: change for it, and those above
   std::int32_t* tiles;  // for each tile: change for it, and those to the right; each row has one more place than tiles
@@ -87,9 +87,9 @@ class PointScatter {
 
   static std::int32_t jump_of(const UpwardEdge& e) { return static_cast<std::int32_t>(e[kJump]); }
 
-  /// A path along a row has the edge between itself and the light's left side where the edge has its height and is left
-  /// of its end. The left side itself crosses the edge once for each of its ends that is left of it, as if the edge
-  /// continued to the left.
+  /// A path along a row crosses the edge if the edge passes the row's height left of the path's end. The left side
+  /// itself crosses the edge once for each of its ends that is left of the light, as if the edge continued to the left
+  /// from there.
   void change_beside(const UpwardEdge& e) {
     if (e[kBottom] <= -0.5F) change_corner(e);
     if (e[kHighX] < -0.5F) change_above(e[kHighY], jump_of(e));
@@ -114,8 +114,8 @@ class PointScatter {
     changes_.rows[above - tiles_.rows.begin()] += by;
   }
 
-  /// Adds an edge in a row of tiles: the tiles that it passes are tested, those to the right of them change as a whole
-  /// if it crosses the row's path.
+  /// Adds an edge in a row of tiles. Tiles that it passes are tested; those to the right of them change as a whole if
+  /// the edge crosses the row's path.
   HWY_INLINE void cross(std::int32_t where, std::int32_t steps) {
     const Tile d;
     const auto edge = static_cast<std::size_t>(where & EdgesInRows::kEdges);
@@ -136,13 +136,14 @@ class PointScatter {
     }
   }
 
-  /// A tile that an edge passes. An end that is left of it (all lanes, or none) stands for the crossing of the edge
-  /// with the path up the tile's left side, as if the edge continued to the left.
+  /// A tile that an edge passes. An end to the left of the tile (in all lanes, or in none) stands for the crossing of
+  /// the edge with the path up the tile's left side, as if the edge continued to the left.
   struct Passed {
     std::uint32_t tile;
     TileM low_left, high_left;
   };
-  /// Tests the path from where the row's path meets the tile up to a light sample's height, and then to the right.
+  /// Tests the path that begins where the row's path meets the tile, goes up to a light sample's height, and then
+  /// right.
   HWY_INLINE void test(const Passed& passed, std::size_t edge) {
     const Tile d;
     const auto constant = [&](UpwardField field) { return hn::Set(d, edges_.fields[field][edge]); };
@@ -194,7 +195,7 @@ class PointScatter {
     return {in_, *at_, number & ~kUnsettled, s_.crossing[kK][e.crossing()], (number & kUnsettled) == 0, std::nullopt};
   }
 
-  /// Tests again the light samples that the edge's line passes within the group's error: `near`, a bit each.
+  /// Tests again the light samples that are within the group's error of the edge's line: `near`, one bit for each.
   HWY_NOINLINE void look_again(const UpwardEdge& e, std::size_t slot, hn::Vec<Tile> side, std::uint32_t near) {
     HWY_ALIGN float sides[LightTiles::kWide];
     hn::Store(side, Tile(), sides);
@@ -228,8 +229,8 @@ class PointScatter {
   RowsFinder find_;
   const ClusterSample* at_ = nullptr;
   UpwardEdges edges_;           // edges that are being added
-  EdgesInRows rows_;            // rows of these
-  std::optional<OwnEdge> own_;  // of the edge tested last
+  EdgesInRows rows_;            // the rows that they are in
+  std::optional<OwnEdge> own_;  // the edge tested last
 };
 
 /// Calls `visit(tile, depth)` with the depth that the changes give a tile, without those of its slots.

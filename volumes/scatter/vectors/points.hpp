@@ -13,7 +13,7 @@ namespace penumbra::volumes {
 
 /// Buffers of one thread, in addition to EdgeScratch.
 struct PointScratch {
-  std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // as in PointChanges
+  std::vector<std::int32_t> tile_changes, row_changes, tile_depths;  // see PointChanges
   vectors::SlotFloats depths;                                        // 0 between view samples
   std::vector<std::uint8_t> is_touched;                              // for each tile; 0 between view samples
   std::vector<std::uint32_t> touched;

@@ -34,7 +34,7 @@ void RowSweep::sort_edges() {
   std::partial_sum(buckets_.begin(), buckets_.end(), buckets_.begin());
   by_bucket_.resize(edges.size());
   for (const RowEdge& edge : edges) by_bucket_[buckets_[bucket_of(edge)]++] = edge;
-  std::size_t begin = 0;  // begin of a bucket, after which `ends` holds its end
+  std::size_t begin = 0;  // first index of a bucket; afterwards `ends` holds the bucket's end
   for (std::size_t bucket = 0; bucket < edges.size(); ++bucket) {
     const std::size_t end = buckets_[bucket];
     for (std::size_t i = begin; i < end; ++i) {
@@ -61,7 +61,8 @@ double RowSweep::next_row() const {
   return std::min(next, soonest_end_);
 }
 
-/// Finds the gap whose sides cross first, the leftmost of several. Searched only if the last one found is gone.
+/// Finds the gap whose sides cross first (the leftmost, if there are several), unless the last one found is still
+/// valid.
 void RowSweep::find_first_crossing() {
   const FirstLeast found = first_least(crossings_);
   soonest_ = found.least;
@@ -118,7 +119,7 @@ void RowSweep::begin_gap(std::size_t number, double y) {
   forget(number);
   crossing = kNever;
   if (last >= 0 || number == 1 || number + 1 == lines_.size()) return;  // edges lie between the light's sides
-  // Nearly coincident lines can have a computed crossing below y; use the lower end of either line instead.
+  // The computed crossing of nearly coincident lines can be below y; the lower of the two lines' ends is used instead.
   const double closing = left.slope - right.slope;
   crossing = apart <= 0 ? y : closing > 0 ? std::min(y + apart / closing, end) : end;
   if (crossing < soonest_) {
@@ -136,7 +137,7 @@ void RowSweep::change_places(std::size_t number, double y) {
   if (first_end_ == number || first_end_ + 1 == number)
     first_end_ = ends_[number - 1] == soonest_end_ ? number - 1 : number;
   forget(number);
-  crossings_[number] = kNever;  // any two lines exchange places once
+  crossings_[number] = kNever;  // any two lines exchange places at most once
   Gap& gap = gaps_[number];
   gap.since = y;
   gap.left = lines_[number - 1].at(y);
@@ -173,7 +174,7 @@ bool RowSweep::hand_over(double y) {
   return all && begin_.empty();
 }
 
-/// Merges the gaps on both sides.
+/// Removes a line, and merges the gaps on both of its sides.
 void RowSweep::remove(std::size_t line, double y) {
   end_gap(line, y);
   end_gap(line + 1, y);
@@ -279,10 +280,11 @@ RowSweep::Area RowSweep::operator()(const Input& input) {
   }
   for (std::size_t gap = 1; gap < lines_.size(); ++gap) end_gap(gap, in_.height);
   // A gap that begins in order and ends no later than the crossing of its sides is in order up to rounding. Line::at
-  // rounds a difference, a product and a sum, none of them larger than the width by more than rounding: it is off by 3
-  // · 2⁻⁵³ of the width, a computed gap width by 7, bounded by 8; between two heights a straight gap is no narrower
-  // than at one of them, so with rounding at both, and between, 16. The crossing of its sides is off by 4 · 2⁻⁵³ of the
-  // height, and the gap there by that fraction of the total change of its width, at most twice the light's: 8 more.
+  // rounds a difference, a product and a sum, none of which exceeds the width by more than rounding: it is off by 3 ·
+  // 2⁻⁵³ of the width, and a computed gap width by 7, bounded by 8. Between two heights, a straight gap is no narrower
+  // than at one of them; with rounding at both heights and between them, that is 16. The crossing of the sides is off
+  // by 4 · 2⁻⁵³ of the height, and the gap there by that fraction of the total change of its width, which is at most
+  // twice the light's: 8 more.
   area_.disorder += static_cast<double>(ends_in_order_) * 0x1p-48 * in_.width * in_.height;
   area_.overlap = std::max(area_.overlap, 0x1p-48 * in_.width);
   return area_;

@@ -23,7 +23,7 @@ struct RowEdge {
     return std::tie(a.y0, a.x0, a.y1, a.x1, a.k) < std::tie(b.y0, b.x0, b.y1, b.x1, b.k);
   }
 };
-/// Change of the depth at the light's left side at y, going up.
+/// Change of the depth at height y of the light's left side, going up.
 struct RowStep {
   double y = 0;
   std::int32_t change = 0;
@@ -34,12 +34,12 @@ struct RowStep {
 };
 
 /// Sweeps a row up the light (J. Bentley, T. Ottmann, "Algorithms for reporting and counting geometric intersections",
-/// 1979) and keeps the edges that it meets in order. Each gap between neighbours has one depth; a gap's trapezoid ends
-/// where one of its sides ends, crosses its neighbour, or another edge comes in between; events elsewhere on the row
-/// cost it nothing.
+/// 1979) and keeps the edges that it meets in order. Each gap between neighbours has one depth. A gap's trapezoid ends
+/// where one of its sides ends or crosses its neighbour, or where another edge comes in between; events elsewhere on
+/// the row cost the gap nothing.
 ///
-/// Rounding. Two neighbours are in the right order if they are in order where the first of them ends; if not, they
-/// exchange places where they cross, or at once. So any two exchange places at most once, whatever the rounding
+/// Rounding: two neighbours are in the right order if they are in order where the first of them ends; if not, they
+/// exchange places where they cross, or at once. So any two exchange places at most once, whatever rounding does
 /// elsewhere.
 class RowSweep {
  public:
@@ -68,9 +68,9 @@ class RowSweep {
 
     [[nodiscard]] double at(double height) const { return x + (height - y) * slope; }
   };
-  /// The gap to the left of the line with the same index, since a row.
+  /// The gap to the left of the line with the same index, from a certain height on.
   struct Gap {
-    double since = 0, left = 0, right = 0;  // row where it begins, and its sides there
+    double since = 0, left = 0, right = 0;  // height where the gap begins, and x of its sides there
     std::int32_t depth = 0;
     bool is_in_order = false;  // its sides were in order when they became neighbours
     bool is_new = false;       // its sides have just become neighbours: neither crossing nor depth is known
@@ -95,9 +95,9 @@ class RowSweep {
   Input in_;
   Area area_;
   std::vector<Line> lines_;        // in order, between the light's two sides
-  std::vector<double> ends_;       // of lines; padded by kRoom, as crossings_
+  std::vector<double> ends_;       // upper ends of the lines; padded by kRoom, like crossings_
   std::vector<Gap> gaps_;          // [0] is unused
-  std::vector<double> crossings_;  // crossing of each gap's two sides
+  std::vector<double> crossings_;  // heights at which each gap's two sides cross
   std::vector<RowEdge> begin_;
   std::vector<RowEdge> by_bucket_;
   std::vector<std::uint32_t> buckets_;
@@ -106,7 +106,7 @@ class RowSweep {
   double soonest_end_ = 0;         // lowest end of the lines, and the leftmost that has it
   std::size_t first_end_ = 0;
   double soonest_ = 0;     // lower bound of all crossings
-  std::size_t first_ = 0;  // the leftmost gap whose sides cross there; kUnknown
+  std::size_t first_ = 0;  // the leftmost gap whose sides cross there; kUnknown if not yet found
 };
 
 }  // namespace penumbra::volumes

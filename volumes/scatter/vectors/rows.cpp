@@ -62,7 +62,7 @@ LightRegion make_light_region(const visibility::Light& light, const LightWindow&
     twice_area += a.x * b.y - a.y * b.x;
     region.outline.push_back({a.x, a.y, b.x, b.y, 0});
   }
-  // Counter-clockwise, the light is left of each edge: to the right there is one more layer.
+  // The light is left of each edge of a counter-clockwise outline; to the right of the edge there is one more layer.
   for (RowEdge& edge : region.outline) edge.k = twice_area > 0 ? -1 : 1;
   region.measure.set_whole(std::abs(twice_area) / 2);
   region.outline_error =
@@ -102,8 +102,8 @@ void RowSum::set_view_sample(const GridSample& at) {
   is_open_ = !(height_ > 8 * error_height_);
 }
 
-/// A direction is λ (middle + s u + t v): λ, s and t by determinants, since a sun's axes are floats and not exactly
-/// orthogonal. The error of `middle` moves places like a foot's. (bound foot)
+/// A direction is λ (middle + s u + t v). λ, s and t are computed by determinants, since a sun's axes are floats and
+/// not exactly orthogonal. The error of `middle` moves places as the error of a foot does. (bound foot)
 void RowSum::see_cone(const LightCone& cone) {
   const auto& [m, u, v] = cone;
   const glm::dvec3 n = glm::cross(u, v);
@@ -121,8 +121,8 @@ void RowSum::see_cone(const LightCone& cone) {
   is_open_ = !(height_ > 8 * error_height_);
 }
 
-/// Returns the side of one of the edge's triangles that p is on. n is the exact normal rounded to float: exact
-/// predicates decide within the effect of that rounding (16 · 2⁻²⁴ of each term, bound side).
+/// Returns the side of one of the edge's triangles that p is on. n is the exact normal rounded to float; where that
+/// rounding matters (16 · 2⁻²⁴ of each term, bound side), exact predicates decide.
 int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) const {
   const glm::dvec3 n = point(leaf.n[side], lane), from = p_ - point(leaf.anchor[side], lane);
   const double f = glm::dot(n, from), error = 16 * static_cast<double>(kRound) * glm::dot(glm::abs(n), glm::abs(from));
@@ -140,7 +140,7 @@ int RowSum::side_of(const WideEdges& leaf, std::size_t side, std::size_t lane) c
 int RowSum::multiplicity(const WideEdges& leaf, std::size_t lane) const {
   int k = 0;
   for (std::size_t side = 0; side < 2; ++side) {
-    if (leaf.plane[side][lane] == plane_) continue;  // its own plane hides nothing
+    if (leaf.plane[side][lane] == plane_) continue;  // the view sample's own plane hides nothing
     if (point(leaf.n[side], lane) == glm::dvec3(0)) continue;
     k += side_of(leaf, side, lane);
   }
@@ -183,15 +183,16 @@ RowSum::Directions RowSum::directions_of(const WideEdges& leaf, std::size_t lane
   return {direction_to(edge.a), direction_to(edge.b)};
 }
 
-/// Returns the double rounding error of the distance of a vector's end inside a side of the window.
+/// Returns a bound of the rounding error, in double, of the distance of a vector's end inside a side of the window.
 double RowSum::error_inside(const Direction& direction, int axis) const {
   const double middle = static_cast<double>(grid_.half_cells[axis]), window = 2 * middle + 2;
   return 2 * (height_ * direction.error + (window + std::abs(foot_[axis] - middle)) * direction.error_up +
               error_height_ * std::abs(direction.to[axis]) + error_foot_ * std::abs(direction.to.z));
 }
 
-/// True if an edge that was clipped away completely might still pass through p within rounding. If it is no nearer to p
-/// than that, every part of it on the light is so high above p that no error can have hidden it. (bound apex)
+/// Returns whether an edge that was clipped away completely might still pass through p within rounding. If the edge is
+/// not that close to p, then every part of it on the light is so high above p that no error can have removed it. (bound
+/// apex)
 bool RowSum::may_pass_p(const Directions& directions) const {
   const Direction &a = directions.a, &b = directions.b;
   const double error = std::max({error_inside(a, 0), error_inside(a, 1), error_inside(b, 0), error_inside(b, 1)});
@@ -250,8 +251,8 @@ bool RowSum::cut_to_window(Directions& directions) {
   return true;
 }
 
-/// Returns the error of a place, for ends with these errors sideways and upward, of which the lower one is `stretch`
-/// times nearer to p's height than the light, and whose places are `far` from the foot. (bound place)
+/// Returns the error of the place of an edge's ends, given their errors sideways and upward. The lower end's height
+/// over p is the light's divided by `stretch`; places are at most `far` from the foot. (bound place)
 double RowSum::placing_error(double stretch, double error, double error_up, double far) const {
   return 2 * (error_foot_ + stretch * error + far * ((error_height_ + stretch * error_up) / height_ + 8 * kUnit) +
               8 * kUnit * (std::abs(foot_.x) + std::abs(foot_.y)));
@@ -287,8 +288,8 @@ void RowSum::count_error(double error) {
   largest_error_ = std::max(largest_error_, error);
 }
 
-/// A lower edge has a slope above 2¹³ (columns) times the inverse of this, and products with it overflow; without it
-/// areas change by less than columns times this.
+/// Drops nearly level edges. A lower edge has a slope above 2¹³ (columns) times the inverse of this height, and
+/// products with it overflow; without the edge, areas change by less than columns times this height.
 void RowSum::keep(const RowEdge& edge) {
   constexpr double kLevel = 0x1p-900;
   if (edge.y1 - edge.y0 > kLevel) edges_.push_back(edge);
@@ -312,8 +313,8 @@ bool RowSum::passes_by(const RowEdge& edge, double error) const {
   return is_beside(edge, error) || least > off || most < -off;
 }
 
-/// Adds an edge. `error`: of its ends' places. Edges outside of the light count nowhere, since not every hierarchy
-/// would have listed them. So the result does not depend on the edges that a hierarchy lists.
+/// Adds an edge. `error`: error of its ends' places. Edges outside of the light are ignored, since not every hierarchy
+/// lists them: the result must not depend on the hierarchy.
 void RowSum::add(RowEdge edge, double error) {
   if (is_beside(edge, error)) return;
   if (!(error < 0.5)) {
@@ -326,10 +327,10 @@ void RowSum::add(RowEdge edge, double error) {
   if (edge.y0 > edge.y1) edge = {edge.x1, edge.y1, edge.x0, edge.y0, -edge.k};
   if ((edge.x0 < 0) != (edge.x1 < 0)) {
     const double y = edge.y0 + (0 - edge.x0) / (edge.x1 - edge.x0) * (edge.y1 - edge.y0);
-    // Crossing it upwards, if it runs to the right: +k.
+    // Change of the depth above the crossing: +k if the edge runs to the right.
     if (y > 0 && y < height) left_.push_back({y, edge.x0 < edge.x1 ? edge.k : -edge.k});
   }
-  // Clipped to the light: first at its sides, then at top and bottom.
+  // Clips the edge to the light: first at its sides, then at top and bottom.
   for (const double side : {0.0, width}) {
     const bool out0 = side == 0 ? edge.x0 < 0 : edge.x0 > width, out1 = side == 0 ? edge.x1 < 0 : edge.x1 > width;
     if (out0 && out1) return;
@@ -353,7 +354,7 @@ void RowSum::add(RowEdge edge, double error) {
 
 std::optional<std::int32_t> RowSum::relative_depth(const glm::dvec2& place, double off) const {
   const auto [x, y] = std::pair(place.x, place.y);
-  // No true edge is nearer than half of this, nor does the following rounding exceed it.
+  // True edges are at least half of this away; the rounding that follows does not exceed the other half.
   const double near = off + 4 * largest_error_ + 64 * kUnit * region_.rounding * (grid_.columns + grid_.rows);
   std::int32_t depth = 0;
   for (const RowStep& step : left_) {
@@ -376,10 +377,10 @@ void RowSum::add_horizon(const HorizonLine& line) {
   if (region_.upper_half) add_line({{0, 1, 0}, glm::dvec3(0)});
 }
 
-/// The part below the line counts as one more layer.
+/// The part of the light below the line has one more layer.
 void RowSum::add_line(const HorizonLine& line) {
   const double width = grid_.columns, height = grid_.rows;
-  // above · (s, t, 1) as a X + b Y + c, from the window's corner.
+  // The line's expression above · (s, t, 1) as a X + b Y + c, with X and Y from the window's corner.
   const LightWindow& window = region_.window;
   const glm::dvec2 size = window.size();
   const glm::dvec3& above = line.above;
@@ -390,7 +391,8 @@ void RowSum::add_line(const HorizonLine& line) {
                s = std::max(std::abs(window.low.x), std::abs(window.high.x)) + std::abs(window.shear) * t;
   const double largest = std::abs(above.x) * s + std::abs(above.y) * t + std::abs(above.z);
   const double error = 4 * (line.error.x * s + line.error.y * t + line.error.z) + 16 * kUnit * largest;
-  // Tested at the end of the side that is farther from the line, so that a line through the corner is counted once.
+  // Tested at the end of the left side that is farther from the line, so that a line through the corner is counted
+  // once.
   if (!(std::max(std::abs(low), std::abs(high)) > error)) {
     is_open_ = true;
     return;
@@ -400,10 +402,10 @@ void RowSum::add_line(const HorizonLine& line) {
     return;
   }
   const std::size_t before = left_.size();
-  // Ends far beyond the light on either side, along the line.
+  // The edge has its ends far beyond the light on either side, along the line.
   const double squared = a * a + b * b, foot = -(c + a * width / 2 + b * height / 2) / squared;
   const double x = width / 2 + a * foot, y = height / 2 + b * foot, far = 2 * (width + height) / std::sqrt(squared);
-  const double sign = a > 0 ? 1 : -1;  // upward
+  const double sign = a > 0 ? 1 : -1;  // makes the edge run upward
   const double off = 2 * error / std::sqrt(squared);
   if (std::max(std::abs(x), std::abs(y)) < 4 * (width + height) + off) {
     // The right side of the line, where it runs upward, is above the plane if a > 0: one layer less.
@@ -433,8 +435,8 @@ std::optional<double> RowSum::visible_share(std::int32_t depth_at_corner, std::v
   const auto rounded = static_cast<double>(edges_.size() + left_.size() + 1) * 32 * kUnit * width * height;
   const auto [visible, impossible, weighed, disorder, overlap] =
       sweep_({width, height, edges_, left_, depth_at_corner + at_corner_, parts, measure.plain() ? nullptr : &measure});
-  // A depth may be wrong between sides whose order is open: as if a side were off by as much. Its own rounding is 16
-  // units of the window.
+  // Where the order of sides is open, a depth may be wrong: as if a side were off by their overlap. The side's own
+  // rounding is 16 units of the window.
   side_error_ = largest_error_ + 4 * overlap + 16 * kUnit * (width + height);
   // Proof of the fraction: (bound share).
   const double off = error_ * (width + height + 2) + 4 * disorder + rounded;

@@ -27,7 +27,8 @@ struct LightRegion {
   LightMeasure measure;
   std::vector<RowEdge> outline = {};  ///< outline of a polygon: outside there is one more layer
   double outline_error = 0;           ///< error of its corners' places
-  bool upper_half = false;  ///< half a dome: the part below the middle is not part of it, and counts one more layer
+  bool upper_half = false;  ///< the light is half a dome: the part below the middle is not light, and has one more
+                            ///< layer
   double rounding = 1;      ///< error of a place of the window in the frame's coordinates, in units of 2⁻⁵³
 };
 LightRegion make_light_region(const visibility::Light& light, const LightWindow& window, const LightGrid& grid,
@@ -46,9 +47,9 @@ class RowSum {
     RowEdge edge;
     double error = 0;  ///< upper bound of the ends' errors, along either axis (bound place)
   };
-  /// Places one of the edges that affect a view sample again from its stored floats, in double: edges near p have large
-  /// errors from float. Returns nullopt if it changes nothing on the light, or on is_open(). `known`: its multiplicity,
-  /// if that is certain.
+  /// Places an edge again from its stored floats, in double, since float has large errors for edges near p. Returns
+  /// nullopt if the edge changes nothing on the light, or on is_open(). `known`: the edge's multiplicity, if that is
+  /// certain.
   [[nodiscard]] std::optional<Placed> place(const WideEdges& leaf, std::size_t lane, const CutEnds* ends,
                                             std::optional<int> known = std::nullopt);
   /// Returns the input of place_side_by_side.
@@ -61,7 +62,7 @@ class RowSum {
   /// Returns the place where one of the casters near the disk passes through it; nullopt if it does not, or on
   /// is_open().
   [[nodiscard]] std::optional<Placed> place_disk_cut(std::size_t caster);
-  /// Returns whether rounding leaves the side of an edge open that the light's corner is on.
+  /// Returns whether rounding leaves open on which side of an edge the light's corner is.
   [[nodiscard]] bool corner_is_open() const { return corner_is_open_; }
   /// Returns the depth at a place of the light (in cells from its corner) minus that at the corner; nullopt if an edge
   /// is near, or within `off` of the place.
@@ -77,7 +78,7 @@ class RowSum {
   [[nodiscard]] bool is_open() const { return is_open_; }
 
  private:
-  /// A vector from p: across and along, and up to the light; the errors of these; and a lower bound of its length.
+  /// A vector from p: its components across, along and up to the light; their errors; and a lower bound of its length.
   struct Direction {
     glm::dvec3 to{0};
     double error = 0, error_up = 0, length = 0;
@@ -113,19 +114,20 @@ class RowSum {
   void keep(const RowEdge& edge);
   void add_outline();
 
-  /// Factor on the error of points within rounding of a disk: side_of_disk uses heights with four times their error.
+  /// Factor on the error of a vector whose end is within rounding of a disk: side_of_disk uses heights with four times
+  /// their error.
   static constexpr double kUnsure = 8;
 
   const LightGrid& grid_;
   const LightRegion& region_;
   const visibility::SceneFloats& scene_;
   float scale_;
-  std::array<glm::dvec3, 3> axes_;  // as LightGrid::axes; for a sphere or sun the view sample's
+  std::array<glm::dvec3, 3> axes_;  // as LightGrid::axes; for a sphere or sun those of the view sample
   double per_length_, skew_;        // of these axes: cells in a unit of length, and their condition
   // Data of the view sample: p over the light's plane, and its error.
   glm::dvec3 p_{0};
   std::uint32_t plane_ = 0;
-  glm::dvec2 foot_{0};  // from the light's corner, in cells
+  glm::dvec2 foot_{0};  // relative to the light's corner, in cells
   double height_ = 0, error_foot_ = 0, error_height_ = 0, steepness_ = 0;
 
   RowSweep sweep_;

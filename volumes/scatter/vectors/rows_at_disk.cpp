@@ -19,8 +19,8 @@ namespace penumbra::volumes {
 using vectors::NearCasters;
 using vectors::NearSpheres;
 
-/// Returns the double rounding error of the height of a vector's end over the disk's plane: m is off by error_height_,
-/// and a point λ times as far away by λ times that.
+/// Returns the rounding error, in double, of the height of a vector's end over the disk's plane. The disk's middle m is
+/// off by error_height_, and a point λ times as far away by λ times that.
 double RowSum::error_over_disk(const Direction& direction) const {
   return direction.error_up + error_height_ * std::max(1.0, direction.to.z / height_);
 }
@@ -48,9 +48,9 @@ RowSum::Direction RowSum::pass_disk(const Direction& first, const Direction& sec
 void RowSum::cut_at_disk(const GridSample& at) {
   cuts_at_disk_ = true;
   const LightCone& cone = grid_.cones->of[at.cone];
-  // A sphere that does not reach the square around the disk never intersects it, regardless of other nearby casters: so
-  // no result depends on casters near other view samples. (The square's corners are √2 of the axes away; the excess
-  // covers rounding.)
+  // A sphere that does not reach the square around the disk never intersects the square, regardless of other nearby
+  // casters: so no result depends on casters near other view samples. (The square's corners are √2 of the axes away;
+  // the excess in the factor covers rounding.)
   const double to_corner = 1.5 * std::max(glm::length(cone.u), glm::length(cone.v));
   const NearSpheres& near = *grid_.cones->near;
   const auto column = [&](std::size_t field) { return near.columns[field].data(); };
@@ -70,11 +70,11 @@ void RowSum::cut_at_disk(const GridSample& at) {
 
 std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   const double* row = &grid_.cones->casters->rows[caster * NearCasters::kRow];
-  if (row[NearCasters::kPlane] == static_cast<double>(plane_)) return std::nullopt;  // its own plane hides nothing
+  if (row[NearCasters::kPlane] == static_cast<double>(plane_)) return std::nullopt;  // p's own plane hides nothing
   std::array<glm::dvec3, 3> corners;
   std::array<Direction, 3> directions;
   std::array<int, 3> sides{};
-  RowEdge box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};  // bounds of its corners, in the direction of the plane
+  RowEdge box{INFINITY, INFINITY, -INFINITY, -INFINITY, 0};  // bounds of the places of its corners, in the disk's plane
   double error = 0, error_up = 0, far = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     corners[i] = {row[3 * i], row[3 * i + 1], row[3 * i + 2]};
@@ -89,12 +89,12 @@ std::optional<RowSum::Placed> RowSum::place_disk_cut(std::size_t caster) {
   }
   if (std::abs(sides[0] + sides[1] + sides[2]) == 3) return std::nullopt;
   if (sides[0] * sides[1] * sides[2] == 0) {
-    // All its crossings with the plane lie between the places of its corners.
+    // All crossings of the triangle's edges with the plane lie between the places of its corners.
     is_open_ = is_open_ || !is_beside(box, kUnsure * placing_error(1, error, error_up, far));
     return std::nullopt;
   }
-  // Walking around the part in front of the plane, with the corners in order: the boundary leaves at `from`, and
-  // returns at `to`.
+  // Walks around the part of the triangle in front of the plane, with the corners in order: the boundary leaves at
+  // `from`, and returns at `to`.
   Direction from, to;
   for (const auto& [i, next] : {std::pair{0U, 1U}, std::pair{1U, 2U}, std::pair{2U, 0U}}) {
     if (sides[i] != sides[next])

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// rows=exact: places the edges of one view sample on vector units, except those that need more.
+// rows=exact: places the edges of one view sample on vector units, except those that need special treatment.
 
 #include "volumes/scatter/vectors/rows.hpp"
 

@@ -31,7 +31,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace vectors::HWY_NAMESPACE;
 
-/// Projects the group's edges for one view sample: those that vectors add, and those that are added individually.
+/// Projects the group's edges for one view sample. Vectors add most of them; the others are listed to be added singly.
 void project(const ClusterInput& in, EdgeScratch& found, RowScratch& scratch, const ClusterSample& at,
              OpenJudge& judge) {
   scratch.precise.clear();
@@ -109,7 +109,7 @@ class SampleScatter {
     const V stride = set(static_cast<float>(grid.padded_rows));
     const M left = hn::And(used, hn::Xor(hn::Lt(x0, set(-0.5F)), hn::Lt(x1, set(-0.5F))));
     const M upper_right = hn::Ge(hn::IfThenElse(hn::Lt(y0, y1), x1, x0), set(-0.5F));
-    V from = end;  // the first row above the edge's crossing with the light's left side
+    V from = end;  // the first row above the point where the edge crosses the light's left side
     for (;;) {
       const M crossed = hn::And(used, hn::Lt(row, end));
       if (hn::AllFalse(d, crossed)) break;
@@ -137,7 +137,7 @@ class SampleScatter {
       const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
                                    hn::Mul(set(8.1F * kRound), hn::Add(set(grid.half_cells.y), hn::Abs(near_y))));
       open = hn::Or(open, hn::And(left, hn::Lt(hn::Abs(hn::Add(y, set(0.5F))), error_y)));
-      // Next to light rows, these decide more precisely than the division: y is used only below the first of them.
+      // Next to light rows, `from` is more precise than the division: y is used only below the first row.
       const M over_corner = hn::Or(hn::Gt(from, set(0)), hn::Gt(y, set(-0.5F)));
       const M above = hn::And(left, hn::And(over_corner, hn::Lt(from, rows)));
       const V up = hn::IfThenElse(hn::Lt(x0, x1), k, hn::Neg(k));
@@ -185,7 +185,7 @@ class SampleScatter {
 
 // ---- depths to bits ------------------------------------------------------------------------------------------------
 
-/// Stores a bit for each lane, from bit `place` on: a multiple of eight, or of the number of lanes if smaller.
+/// Stores a bit for each lane, beginning at bit `place`: a multiple of eight, or of the number of lanes if smaller.
 template <class Tag>
 void store_bits(Tag d, hn::Mask<Tag> which, std::size_t place, std::uint8_t* bytes) {
   std::uint8_t found[8] = {};
@@ -198,7 +198,7 @@ void store_bits(Tag d, hn::Mask<Tag> which, std::size_t place, std::uint8_t* byt
   }
 }
 
-/// Sums as many rows as there are lanes, from `row` on, from the depths at their left ends.
+/// Sums as many rows as there are lanes, beginning at `row`, from the depths at their left ends.
 template <class Tag, typename Counter>
 void sum_rows(Tag d, const LightGrid& grid, const Changes<Counter>& changes, std::size_t row, SampleMask& mask) {
   auto* const bytes = reinterpret_cast<std::uint8_t*>(mask.bits);
@@ -246,7 +246,7 @@ std::uint32_t depth_by_other_sample(const LightGrid& grid, const Changes<Counter
   return 0;
 }
 
-/// Returns D at the light's corner if no edge changes the depth: that of any light sample that is not open.
+/// Returns D at the light's corner if no edge changes the depth: D at any light sample that is not open.
 std::uint32_t depth_by_any_sample(const LightGrid& grid, Open& open, const ClusterSample& at, OpenJudge& judge) {
   for (std::uint32_t sample = 0; sample < grid.rows * grid.columns; ++sample) {
     if (std::find(open.samples.begin(), open.samples.end(), sample) != open.samples.end()) continue;

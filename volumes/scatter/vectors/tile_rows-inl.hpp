@@ -28,7 +28,8 @@ struct EdgesInRows {
   static constexpr int kRowShift = 9;
   static constexpr std::size_t kMost = (LightTiles::kMostRows + 1) * hn::MaxLanes(D());
   HWY_ALIGN std::array<std::int32_t, kMost> where;  // the edge, kCrosses, and the row
-  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // steps of LightTiles::tiles_at: from and, times 2¹⁶, to
+  HWY_ALIGN std::array<std::int32_t, kMost> steps;  // steps (LightTiles::tiles_at) at which the edge begins and ends
+                                                    // there: begin + 2¹⁶ · end
   std::size_t count = 0;
 };
 
@@ -63,7 +64,8 @@ class RowsFinder {
   }
 
  private:
-  /// There are at most sixteen rows, and one out of reach.
+  /// Returns a row's value for each lane. There are at most sixteen rows; the index after the last gives a value out of
+  /// reach.
   [[nodiscard]] static HWY_INLINE V of_row(const LightTiles::RowFloats& rows, hn::Vec<I> row) {
 #if HWY_TARGET <= HWY_AVX3
     return hn::IfThenElse(hn::RebindMask(D(), hn::Lt(row, hn::Set(I(), std::int32_t{LightTiles::kMostRows}))),

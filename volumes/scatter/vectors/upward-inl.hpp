@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges oriented upward, in vectors: the form in which arbitrary light samples are tested (points.cpp). Included once
-// for each target, after foreach_target.h.
+// for each target, after foreach_target.h. Bounds: docs/edge-scatter.md.
 
 #if defined(PENUMBRA_VOLUMES_UPWARD_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENUMBRA_VOLUMES_UPWARD_INL_HPP
@@ -32,8 +32,8 @@ enum UpwardField : std::size_t {
   kHighY,
   kWayX,
   kWayY,
-  kJump,       // change of the depth to the right of it
-  kNear,       // a light sample within this of either side (in areas: side_of) may be on the other one
+  kJump,       // change of the depth to the right of the edge
+  kNear,       // a light sample whose |side_of| is at most this may be on the other side of the edge
   kLeftmost,   // no such light sample is left of this,
   kRightmost,  // right of this,
   kBottom,     // below this
@@ -48,8 +48,8 @@ struct UpwardEdges {
 struct UpwardVectors {
   V low_x, low_y, high_x, high_y, jump, leftmost, rightmost, bottom, top;
   V slope;         // slope of x
-  V beside;        // along a row: light samples within this may be on the other side
-  hn::Vec<I> row;  // row of tiles: none below it reaches up to `bottom`
+  V beside;        // light samples within this of the edge, along a row, may be on its other side
+  hn::Vec<I> row;  // row of tiles at which to begin: no row below it reaches up to `bottom`
   M used;
   M beside_left;  // the edge may affect the light's corner or left side
 };
@@ -99,7 +99,7 @@ struct UpwardEdge {
   store(kRightmost, e.rightmost);
   store(kBottom, e.bottom);
   store(kTop, e.top);
-  // A flatter edge may be next to any light sample of a row: valid for every limit, which only keeps slopes finite.
+  // A flatter edge may be next to any light sample of a row. Any threshold is correct: it only keeps slopes finite.
   const M leans = hn::Gt(way_y, hn::Mul(set(1e-6F), wide));
   e.slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
   const V beside =

@@ -25,7 +25,7 @@ Double number(double x) {
 }
 
 /// The operations are those of RowSum::direction_to, cut_to_window, place and placing_error, in the same order: an edge
-/// may be placed by either code, and its ends are ends of other edges.
+/// may be placed by either code, and its ends may be those of edges that the other code places.
 class SideBySide {
  public:
   explicit SideBySide(const PlacesFrame& frame) : f_(frame) {}

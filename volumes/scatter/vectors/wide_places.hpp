@@ -17,7 +17,7 @@ struct PlacesFrame {
   std::array<glm::dvec3, 3> axes{};
   glm::dvec2 foot{0}, middle{0}, size{0};  ///< middle and size of the window, in cells
   double height = 0, per_length = 0, skew = 0, error_foot = 0, error_height = 0;
-  bool ends = false;  ///< segments end at the light's height, as for a sphere
+  bool ends = false;  ///< whether segments end at the light's height, as for a sphere
 };
 
 /// A few edges, and their places.
@@ -25,8 +25,8 @@ struct WidePlaces {
   static constexpr std::size_t kMost = 64;
   using Column = std::array<double, kMost>;
   enum How : std::uint8_t {
-    kUnplaced,  ///< must be clipped, or is near p's height: RowSum::place
-    kBeside,    ///< outside of the light: counts nowhere
+    kUnplaced,  ///< must be clipped, or is near p's height: RowSum::place handles it
+    kBeside,    ///< outside of the light: ignored
     kCrossing,  ///< may extend beyond the light, or its error is large
     kInside,    ///< inside the light, and away from its corner
   };
@@ -35,7 +35,7 @@ struct WidePlaces {
   alignas(64) std::array<Column, 3> b{};
   alignas(64) Column x0{}, y0{}, x1{}, y1{}, error{};
   std::array<How, kMost> how{};
-  std::array<std::int32_t, kMost> k{};  ///< set by the caller, as the next
+  std::array<std::int32_t, kMost> k{};  ///< set by the caller, as is `slot`
   std::array<std::uint32_t, kMost> slot{};
   std::size_t count = 0;
 };
