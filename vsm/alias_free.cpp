@@ -33,14 +33,14 @@ namespace {
 using pairs::Footprint, pairs::LightPixels;
 
 visibility::MeshVerdict alias_free_verdict(const mesh::Diagnosis& mesh) {
-  return {visibility::Verdict::approximate,
-          visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
-                                  mesh,
-                                  {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
+  return {
+      visibility::Verdict::approximate,
+      visibility::reason_with("a hard shadow of the light's centre; as a hard shadow it is exact for every mesh", mesh,
+                              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 constexpr visibility::RealOption kPerPixel{"perPixel", 0.125, 64, 1,
-                                           "average number of view samples in a light pixel; affects time alone"};
+                                           "average number of view samples in a light pixel; affects only the time"};
 
 visibility::MethodDescription describe_alias_free() {
   return {.name = "alias-free",

@@ -33,7 +33,7 @@ constexpr std::uint32_t kLeafWords = 8;   // words of masks that are tested toge
 
 visibility::MeshVerdict hierarchical_penumbra_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
-          visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
+          visibility::reason_with("every pair is decided exactly, for every mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }

@@ -20,18 +20,18 @@ namespace {
 
 visibility::MeshVerdict view_sample_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
-          visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
+          visibility::reason_with("every pair is decided exactly, for every mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 enum class Variant : std::uint8_t { tree, sintorn };
-constexpr visibility::ChoiceOption kVariant{"variant",
-                                            {{"tree", Variant::tree}, {"sintorn", Variant::sintorn}},
-                                            Variant::tree,
-                                            "tree: find pairs by a hierarchy of triangles; sintorn: as published, view "
-                                            "samples in lists of light pixels, on the "
-                                            "processor, all but spheres"};
+constexpr visibility::ChoiceOption kVariant{
+    "variant",
+    {{"tree", Variant::tree}, {"sintorn", Variant::sintorn}},
+    Variant::tree,
+    "tree: find pairs by a hierarchy of triangles; sintorn: as published, view samples in lists of light pixels; on "
+    "the processor, for all lights but spheres"};
 
 bool is_planar_light(const visibility::Light& light) {
   return visibility::is_planar(light.kind);
@@ -66,7 +66,7 @@ std::unique_ptr<visibility::Method> make_view_sample(const render::Machine& mach
   const visibility::ParsedOptions options = visibility::parse_options(view_sample_description(), given);
   if (options[kVariant] == Variant::sintorn) {
     if (options[engines::kEngine] == engines::Engine::vulkan) {
-      throw UsageError("view-sample: variant=sintorn runs on the processor; leave engine=vulkan out");
+      throw UsageError("view-sample: variant=sintorn runs only on the processor; omit engine=vulkan");
     }
     return make_view_sample_lists(view_sample_description(given));
   }

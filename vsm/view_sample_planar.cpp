@@ -39,23 +39,24 @@ constexpr visibility::ChoiceOption kLookup{
     "lookup",
     {{"exact", Lookup::exact}, {"nearest", Lookup::nearest}},
     Lookup::exact,
-    "exact: what a texel of the left-sample map leaves open is decided pair by pair; nearest: as published, the light "
-    "samples of the texel's middle"};
+    "exact: light samples that a texel of the left-sample map leaves open are decided pair by pair; nearest: as "
+    "published, uses the light samples stored for the texel's middle"};
 constexpr visibility::IntegerOption kMap{"map", 8, 1024, 128,
                                          "number of angles, and of distances, of the left-sample map"};
 constexpr visibility::IntegerOption kFewest{"fewest", 1, 1U << 24U, 1024,
-                                            "smallest number of view samples for which a plane is a receiver of its "
-                                            "own; those of other planes are a height field"};
+                                            "smallest number of view samples for which a plane is a separate receiver; "
+                                            "view samples of all other planes form a height field"};
 
 visibility::MeshVerdict exact_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::exact,
-          visibility::reason_with("every pair is decided exactly, whatever is wrong with the mesh", mesh,
+          visibility::reason_with("every pair is decided exactly, for every mesh", mesh,
                                   {{mesh.boundary_loops, "open boundaries, where light passes as it should"},
                                    {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 visibility::MeshVerdict approximate_on(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
-          visibility::reason_with("light samples near a triangle's outline are as the left-sample map has them", mesh,
+          visibility::reason_with("light samples near a triangle's outline are only as precise as the left-sample map",
+                                  mesh,
                                   {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
@@ -67,7 +68,7 @@ visibility::ErrorRepairs view_sample_planar_repairs(const visibility::MethodDesc
   visibility::repair_of(repairs, ErrorCause::resolution) = {
       .cause = ErrorCause::resolution,
       .runs = {{method.name, visibility::options_with(method, given, {{kLookup.name(), "exact"}})}},
-      .words = "what a texel of the left-sample map leaves open decided pair by pair (lookup=exact)"};
+      .words = "light samples that a texel of the left-sample map leaves open are decided pair by pair (lookup=exact)"};
   visibility::repair_of(repairs, ErrorCause::samples) = visibility::more_light_samples(method, given);
   return repairs;
 }

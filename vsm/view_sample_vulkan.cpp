@@ -38,10 +38,10 @@ class ViewSampleMapping final : public device::MaskMethod {
   }
 
   void prepare_light(const visibility::Light& light) override {
-    visibility::require_kind(
-        light, visibility::kPlanarLights,
-        ": view-sample with engine=vulkan does planar lights ({}); without engine=vulkan it does every light",
-        visibility::kPlanarLights.words());
+    visibility::require_kind(light, visibility::kPlanarLights,
+                             ": view-sample with engine=vulkan supports only planar lights ({}); without engine=vulkan "
+                             "it supports every light",
+                             visibility::kPlanarLights.words());
     MaskMethod::prepare_light(light);
   }
 
@@ -119,7 +119,8 @@ class ViewSampleMapping final : public device::MaskMethod {
     const std::uint64_t needed = 4 * (std::uint64_t{shape_.shared_words} * lanes() + std::max(walk, twice));
     if (needed <= device().limits().max_shared_memory) return;
     throw InputError(
-        "light \"{}\": {} light samples need {} bytes of shared memory, {} has {}; take fewer, or raytrace",
+        "light \"{}\": {} light samples need {} bytes of shared memory, but {} has {}; use fewer light samples, or the "
+        "method raytrace",
         light().name, light().sample_count(), needed, device().info().name, device().limits().max_shared_memory);
   }
 
@@ -167,7 +168,7 @@ class ViewSampleMapping final : public device::MaskMethod {
 
   void shorten_loops() override {
     if (shape_.chunk == 1)
-      throw ResourceError("view-sample: {} cuts off loops over the light samples", device().info().name);
+      throw ResourceError("view-sample: {} ends loops over the light samples too early", device().info().name);
     shape_.chunk = std::max(shape_.chunk / 4, 1U);
     build_passes();
   }

@@ -44,12 +44,11 @@ constexpr visibility::ChoiceOption kSearch{
     "search",
     {{"hierarchy", Search::hierarchy}, {"kd-tree", Search::kd_tree}, {"hemicube", Search::hemicube}},
     Search::hierarchy,
-    "soup, on the processor: how edges are found. kd-tree: over receivers (Lehtinen); hemicube: a grid around the "
-    "light "
-    "(Laine); both for planar lights. The masks are the same"};
+    "soup, on the processor: structure by which edges are found. kd-tree: over receivers (Lehtinen); hemicube: a grid "
+    "around the light (Laine); both only for planar lights. The masks do not depend on it"};
 constexpr auto kCrop = visibility::flag_option(
     "crop", true,
-    "soup, laine: leave out edges that are no silhouettes as seen from a group of view samples; V is the same");
+    "soup, laine: omit edges that are not silhouettes as seen from a group of view samples; V is the same");
 constexpr visibility::ChoiceOption kCounterBits{
     "counter-bits",
     {{"6", 6U}, {"8", 8U}, {"16", 16U}},
@@ -59,7 +58,7 @@ constexpr visibility::ChoiceOption kAs{"as",
                                        {{"repaired", false}, {"published", true}},
                                        false,
                                        "forest: repaired: decides pairs exactly if counters overflow or signs are in "
-                                       "doubt; published: takes the counters as they are"};
+                                       "doubt; published: uses the counters as they are"};
 
 visibility::MeshVerdict depth_complexity_verdict(const mesh::Diagnosis& mesh) {
   return {
@@ -85,14 +84,14 @@ visibility::ParsedOptions parse(const visibility::MethodDescription& description
   visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool forest = options[kVariant] == Variant::forest;
   if (options[engines::kEngine] == engines::Engine::vectors && !can_be_native(options)) {
-    throw UsageError("depth-complexity: variant={} and crop=off run on the Vulkan device: leave engine=native out",
+    throw UsageError("depth-complexity: variant={} and crop=off run only on the Vulkan device: omit engine=native",
                      options[kVariant] == Variant::soup ? "laine, forest" : kVariant.name_of(options[kVariant]));
   }
   if (options[kSearch] != Search::hierarchy &&
       (!can_be_native(options) || options[engines::kEngine] == engines::Engine::vulkan)) {
     throw UsageError(
-        "depth-complexity: search={} is on the processor, of variant=soup with crop=on: leave engine=vulkan, "
-        "variant and crop out",
+        "depth-complexity: search={} runs only on the processor, with variant=soup and crop=on: omit engine=vulkan, "
+        "variant and crop",
         kSearch.name_of(options[kSearch]));
   }
   if (forest ? options.given(kCrop) : options.given(kCounterBits) || options.given(kAs)) {
@@ -116,7 +115,7 @@ visibility::ErrorRepairs depth_complexity_repairs(const visibility::MethodDescri
   repair_of(repairs, ErrorCause::samples) = visibility::more_light_samples(method, given);
   if (variant == "laine") return repairs;
   if (options.at(kAs.name()) == "published") {
-    const char* words = "only with as=repaired: counters that overflow are not this cause";
+    const char* words = "only with as=repaired, since errors of overflowing counters do not have this cause";
     repair_of(repairs, ErrorCause::view) = visibility::inseparable(ErrorCause::view, words);
     repair_of(repairs, ErrorCause::samples) = visibility::inseparable(ErrorCause::samples, words);
     return repairs;
@@ -160,8 +159,8 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
 
   void prepare_light(const visibility::Light& light) override {
     visibility::require_kind(light, visibility::kPlanarLights,
-                             ": depth-complexity on the Vulkan device (engine=vulkan, variant=laine, crop=off) does "
-                             "planar lights ({}); without these options it does every light",
+                             ": depth-complexity on the Vulkan device (engine=vulkan, variant=laine, crop=off) "
+                             "supports only planar lights ({}); without these options it supports every light",
                              visibility::kPlanarLights.words());
     EdgeMethod::prepare_light(light);
   }
@@ -209,7 +208,8 @@ class DepthComplexity final : public EdgeMethod, public DepthCounters {
     const std::uint64_t needed = 4ULL * light().sample_count() + 8ULL * light().words_per_mask() + 24ULL * kQueued;
     if (needed <= device().limits().max_shared_memory) return;
     throw InputError(
-        "light \"{}\": {} light samples need {} bytes of shared memory, {} has {}; take fewer, or view-sample",
+        "light \"{}\": {} light samples need {} bytes of shared memory, but {} has {}; use fewer light samples, or the "
+        "method view-sample",
         light().name, light().sample_count(), needed, device().info().name, device().limits().max_shared_memory);
   }
 

@@ -223,8 +223,8 @@ void PackedCounters::refuse_what_reaches_through() const {
     static_cast<void>(tree_.any_along(center, l, [&](std::uint32_t triangle) {
       if (scene_->emits[triangle] == light_->index || !touches(scene_->corners(triangle), center, l)) return false;
       throw InputError(
-          "light \"{}\": triangle {} reaches through it, which depth-complexity variant=forest cannot count; take "
-          "variant=soup, or move the light clear of it",
+          "light \"{}\": triangle {} reaches through it, which depth-complexity variant=forest cannot count; use "
+          "variant=soup, or move the light away from the triangle",
           light_->name, triangle);
     }));
   }

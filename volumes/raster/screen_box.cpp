@@ -93,8 +93,8 @@ BoxFinder::BoxFinder(const visibility::PinholeCamera& camera)
 void require_perspective(const visibility::PinholeCamera& camera) {
   if (!camera.half_height && !camera.lens) return;
   throw InputError(
-      "the camera {}; methods that draw shadow volumes look from a point. Take another camera (--camera) "
-      "or method (edge-scatter, view-sample and raytrace look from anywhere)",
+      "the camera {}; methods that draw shadow volumes need a pinhole camera. Use another camera (--camera) or method "
+      "(edge-scatter, view-sample and raytrace support every camera)",
       camera.half_height ? "is orthographic" : "has a lens with an aperture");
 }
 

@@ -132,7 +132,7 @@ void WedgeRaster::set_table(std::span<const double> table) {
 void WedgeRaster::add(std::span<const gpu::WedgeFace> faces, std::span<const gpu::WedgeReceiver> receivers,
                       gpu::WedgePush push, const Tile& tile, std::uint32_t width) {
   State& s = *state_;
-  PENUMBRA_ASSERT(receivers.size() == std::size_t{tile.row_count} * width, "{} receivers in {} rows of {}",
+  PENUMBRA_ASSERT(receivers.size() == std::size_t{tile.row_count} * width, "{} receivers for {} rows of {} pixels",
                   receivers.size(), tile.row_count, width);
   s.sums.resize(receivers.size() * s.words);
   s.doubts.resize(receivers.size());

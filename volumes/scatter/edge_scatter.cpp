@@ -98,7 +98,8 @@ class EdgeScatter final : public EdgeMethod {
     columns_ = light().columns;
     if (room() < columns_) {
       throw InputError(
-          "light \"{}\": edge-scatter handles rows of up to {} light samples on {}; this has {}; use view-sample",
+          "light \"{}\": edge-scatter handles rows of up to {} light samples on {}; this light has rows of {}; use "
+          "view-sample",
           light().name, room(), device().info().name, columns_);
     }
     band_rows_ = 4 * std::min({room() / columns_, kMostBandWords, row_words()});
@@ -130,7 +131,7 @@ class EdgeScatter final : public EdgeMethod {
     const std::uint32_t steps = (rows_ + kStep - 1) / kStep, at_once = room() / words_of_points(points.fours, kStep);
     if (at_once == 0) {
       throw InputError(
-          "light \"{}\": edge-scatter has no room on {} for {} light samples side by side; take fewer, or use "
+          "light \"{}\": edge-scatter has no room on {} for {} light samples in one row; use fewer light samples, or "
           "view-sample",
           light().name, device().info().name, points.fours * gpu::kPointsAtOnce);
     }
@@ -284,13 +285,13 @@ visibility::MethodDescription edge_scatter_description(const visibility::MethodO
   const visibility::ParsedOptions options = visibility::parse_options(description, given);
   const bool on_device = options[engines::kEngine] == engines::Engine::vulkan;
   if (on_device && options[kExactRows])
-    throw UsageError("edge-scatter: rows=exact runs on the processor: leave engine=vulkan out");
+    throw UsageError("edge-scatter: rows=exact runs only on the processor: omit engine=vulkan");
   if (on_device) description.lights = description.lights & visibility::kPlanarLights;
   if (!options[kExactRows]) return description;
   description.output = visibility::Output::radiance;
   description.exact_for =
-      "the visible share of any light, textured or not, to float32, for any triangle soup; the beauty under "
-      "constant radiance, pictures of domes and textures of up to 64 x 64 texels";
+      "the visible share of any light, textured or not, to float32 precision, for any triangle soup; the beauty image "
+      "for constant radiance, pictures of domes, and textures of up to 64 x 64 texels";
   return description;
 }
 

@@ -73,7 +73,7 @@ class FusedVolume final : public visibility::Method {
     visibility::check_light(description_, light);
     if (options_.split > 1) {
       visibility::require_kind(light, visibility::kParallelograms,
-                               "; method soft-volume cuts only rectangles in parts: take split=1");
+                               "; method soft-volume can divide only rectangles: use split=1");
     }
     parts_ = volumes::light_parts(light, options_.split);
     visibility_.clear();

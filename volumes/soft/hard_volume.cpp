@@ -19,10 +19,10 @@ namespace penumbra::volumes {
 namespace {
 
 visibility::MeshVerdict hard_volume_verdict(const mesh::Diagnosis& mesh) {
-  return {visibility::Verdict::approximate,
-          visibility::reason_with("a hard shadow of the light's centre, exact as such whatever is wrong with the mesh",
-                                  mesh,
-                                  {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
+  return {
+      visibility::Verdict::approximate,
+      visibility::reason_with("a hard shadow of the light's centre; as a hard shadow it is exact for every mesh", mesh,
+                              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 enum class Variant { z_fail, z_pass, zp_plus, cc, split, hierarchical, tiles };
@@ -37,13 +37,11 @@ constexpr visibility::ChoiceOption kVariant{
      {"hierarchical", Variant::hierarchical},
      {"tiles", Variant::tiles}},
     Variant::z_fail,
-    "count volumes beyond the surface; between it and the camera, wrong when the camera is in shadow, or (zp+) from "
-    "the "
-    "count at the camera; without volumes that hide nothing new, cut to where surfaces are (cc); on the side that "
-    "costs "
-    "less (split); without triangles that hide nothing from any pixel (hierarchical); at one pixel of each tile that "
-    "no "
-    "volume's face touches (tiles)"};
+    "where and which volumes are counted. z-fail: beyond the surface; z-pass: between the camera and the surface, "
+    "wrong if the camera is in shadow; zp+: as z-pass, beginning with the count at the camera; cc: without volumes "
+    "that hide nothing new, others cut to where surfaces are; split: on the cheaper side of the surface; hierarchical: "
+    "without triangles that hide nothing from any pixel; tiles: at only one pixel of each tile that no face of a "
+    "volume touches"};
 
 CountVariant count_variant(Variant variant) {
   return variant == Variant::z_pass    ? CountVariant::z_pass
@@ -57,8 +55,7 @@ visibility::ErrorRepairs hard_volume_repairs(const visibility::MethodDescription
   visibility::ErrorRepairs repairs = visibility::exact_centre_repairs(method, given);
   if (visibility::complete_options(method, given).at(kVariant.name()) == "z-pass") {
     visibility::repair_of(repairs, ErrorCause::view) = visibility::inseparable(
-        ErrorCause::view,
-        "z-pass also counts wrongly where the camera is in shadow, and the repair would count rightly");
+        ErrorCause::view, "z-pass is also wrong where the camera is in shadow, and the repair would correct that, too");
   }
   return repairs;
 }

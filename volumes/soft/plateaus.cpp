@@ -27,26 +27,27 @@ using visibility::Light;
 using visibility::Tile;
 
 visibility::MeshVerdict plateaus_verdict(const mesh::Diagnosis& mesh) {
-  return {
-      visibility::Verdict::approximate,
-      visibility::reason_with("a hard shadow, and around it a penumbra by distance alone: umbrae are too large", mesh,
-                              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
+  return {visibility::Verdict::approximate,
+          visibility::reason_with(
+              "a hard shadow with a penumbra around it that depends only on distance: umbrae are too large", mesh,
+              {{mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
 }  // namespace
 
 visibility::MethodDescription plateaus_description() {
-  return {
-      .name = "plateaus",
-      .family = visibility::Family::geometry,
-      .paper = "Haines 2001",
-      .output = visibility::Output::scalar,
-      .exact_for = "nothing: what is lit outside of all penumbrae, and what the light's centre does not see in umbrae",
-      .lights = visibility::kPlanarLights,
-      .textures = false,
-      .options = {},
-      .verdict_on = plateaus_verdict,
-      .repairs = plateaus_repairs};
+  return {.name = "plateaus",
+          .family = visibility::Family::geometry,
+          .paper = "Haines 2001",
+          .output = visibility::Output::scalar,
+          .exact_for =
+              "only points that are lit outside of all penumbrae, and points in umbrae that the light's centre does "
+              "not see",
+          .lights = visibility::kPlanarLights,
+          .textures = false,
+          .options = {},
+          .verdict_on = plateaus_verdict,
+          .repairs = plateaus_repairs};
 }
 
 namespace {

@@ -48,8 +48,9 @@ ErrorRepair own_silhouettes(const Form& form) {
 ErrorRepair unions(const Form& form) {
   return {.cause = ErrorCause::fusion,
           .runs = {run_of(form)},
-          .words = fmt::format("the same layers joined, not added: {} light samples (soft-irregular:fusion=union)",
-                               kRepairSamples)};
+          .words = fmt::format(
+              "the union of the same layers, instead of their sum: {} light samples (soft-irregular:fusion=union)",
+              kRepairSamples)};
 }
 
 /// Returns the repairs of sums over silhouettes of the centre, in parts of the light.
@@ -105,7 +106,7 @@ ErrorRepairs soft_irregular_repairs(const MethodDescription& method, const Metho
     repair_of(repairs, ErrorCause::view).runs = {with("silhouettes", "receiver")};
   } else {
     repair_of(repairs, ErrorCause::view) =
-        visibility::inseparable(ErrorCause::view, "each view sample has the silhouettes that it sees");
+        visibility::inseparable(ErrorCause::view, "each view sample already uses the silhouettes that it sees");
     repairs.one_view.clear();
   }
   if (!layers) {
@@ -113,7 +114,8 @@ ErrorRepairs soft_irregular_repairs(const MethodDescription& method, const Metho
                                               .runs = {with("umbra", "layers")},
                                               .words = "all layers that hide the light's centre (umbra=layers)"};
     repair_of(repairs, ErrorCause::fusion) = visibility::inseparable(
-        ErrorCause::fusion, "the map has one layer, and what it does not know cannot be joined: only of umbra=layers");
+        ErrorCause::fusion,
+        "only with umbra=layers: the map has one layer, and the others, which it does not store, cannot be joined");
   } else if (options.at("fusion") == "union") {
     repair_of(repairs, ErrorCause::fusion) =
         visibility::inseparable(ErrorCause::fusion, "a part of the light that several triangles hide counts once");
@@ -132,7 +134,9 @@ ErrorRepairs soft_volume_blend_repairs(const MethodDescription& method, const Me
   view = visibility::parted_light(method, given);
   view.words += "; boxes get better with it";
   repair_of(repairs, ErrorCause::fusion).words = fmt::format(
-      "all layers joined, not objects by their boxes: {} light samples (soft-irregular:fusion=union)", kRepairSamples);
+      "the union of all layers, instead of objects combined by their boxes: {} light samples "
+      "(soft-irregular:fusion=union)",
+      kRepairSamples);
   return repairs;
 }
 
@@ -140,24 +144,24 @@ ErrorRepairs wedge_ramp_repairs(const MethodDescription& method, const MethodOpt
   ErrorRepairs repairs = sum_repairs(1);
   ErrorRepair& view = repair_of(repairs, ErrorCause::view);
   view = visibility::parted_light(method, given);
-  view.words += "; ramps get shorter with it";
-  repair_of(repairs, ErrorCause::fusion) =
-      visibility::inseparable(ErrorCause::fusion, "ramps hide no region of the light that could be joined");
+  view.words += "; this shortens the ramps";
+  repair_of(repairs, ErrorCause::fusion) = visibility::inseparable(
+      ErrorCause::fusion, "a ramp does not say which region of the light is hidden, so no regions can be joined");
   repair_of(repairs, ErrorCause::falloff) = {
       .cause = ErrorCause::falloff,
       .runs = {{"soft-volume", {}}},
-      .words = "the light's area beyond each edge in place of a ramp of distances (soft-volume)"};
+      .words = "the light's area beyond each edge instead of a linear ramp (soft-volume)"};
   return repairs;
 }
 
 ErrorRepairs plateaus_repairs(const MethodDescription& method, const MethodOptions& given) {
   ErrorRepairs repairs =
-      visibility::no_repairs({.layers = "the light's centre is hidden or not, by one surface or by many",
-                              .fusion = "the darkest of all edges counts: nothing is added or joined",
-                              .falloff = "penumbrae outside of a whole hard shadow have no form with areas"});
+      visibility::no_repairs({.layers = "only whether the light's centre is hidden matters, not by how many surfaces",
+                              .fusion = "only the darkest edge counts, so nothing is added or joined",
+                              .falloff = "penumbrae around a complete hard shadow have no equivalent with areas"});
   ErrorRepair& view = repair_of(repairs, ErrorCause::view);
   view = visibility::parted_light(method, given);
-  view.words += "; penumbrae get narrower with it";
+  view.words += "; this narrows the penumbrae";
   return repairs;
 }
 

@@ -41,11 +41,11 @@ constexpr std::size_t kMostPixels = 1U << 18U;  ///< most pixels of a tile, each
                                                 ///< edges
 
 enum class Umbra : std::uint8_t { map, layers };
-constexpr visibility::ChoiceOption kUmbra{"umbra",
-                                          {{"map", Umbra::map}, {"layers", Umbra::layers}},
-                                          Umbra::map,
-                                          "map: the light's centre is seen or it is not, as published; layers: count "
-                                          "how many layers hide it"};
+constexpr visibility::ChoiceOption kUmbra{
+    "umbra",
+    {{"map", Umbra::map}, {"layers", Umbra::layers}},
+    Umbra::map,
+    "map: store only whether the light's centre is visible, as published; layers: count how many layers hide it"};
 constexpr visibility::ChoiceOption kArc{
     "arc",
     {{"cosine", Arc::cosine}, {"tangent", Arc::tangent}},
@@ -53,27 +53,25 @@ constexpr visibility::ChoiceOption kArc{
     "disks and ellipses: the angle of a sector by an arc cosine, as published, or by "
     "arc tangents, which keep small angles"};
 
-constexpr visibility::ChoiceOption kSilhouettes{
-    "silhouettes",
-    {{"centre", Viewer::center}, {"receiver", Viewer::receiver}},
-    Viewer::center,
-    "centre: those that the light's centre sees, for all view samples, as published; receiver: those that each view "
-    "sample sees"};
+constexpr visibility::ChoiceOption kSilhouettes{"silhouettes",
+                                                {{"centre", Viewer::center}, {"receiver", Viewer::receiver}},
+                                                Viewer::center,
+                                                "centre: for all view samples those that the light's centre sees, as "
+                                                "published; receiver: those that each view sample sees"};
 enum class Overlap : std::uint8_t { sum, joined };
-constexpr visibility::ChoiceOption kOverlap{
-    "fusion",
-    {{"sum", Overlap::sum}, {"union", Overlap::joined}},
-    Overlap::sum,
-    "sum: what hides the same part of the light counts twice; union: the light samples at which there is no layer, "
-    "with umbra=layers"};
+constexpr visibility::ChoiceOption kOverlap{"fusion",
+                                            {{"sum", Overlap::sum}, {"union", Overlap::joined}},
+                                            Overlap::sum,
+                                            "sum: a part of the light that two layers hide counts twice; union: V is "
+                                            "the fraction of light samples that no layer hides, with umbra=layers"};
 
 visibility::MeshVerdict soft_irregular_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
-              "the silhouettes of the light's centre stand for all of them, and what one occluder gives back where "
-              "another hides the centre is light that leaks",
+              "the light centre's silhouettes are used for every light sample, and light leaks where one occluder's "
+              "edge adds light although another occluder hides the centre",
               mesh,
-              {{mesh.boundary_edges.count, "boundary edges: the surface counts triangle by triangle"},
+              {{mesh.boundary_edges.count, "boundary edges: each triangle of the surface counts on its own"},
                {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
@@ -111,7 +109,7 @@ class SoftIrregular final : public visibility::Method {
     viewer_ = options[kSilhouettes];
     overlap_ = options[kOverlap];
     if (overlap_ == Overlap::joined && umbra_ == Umbra::map)
-      throw UsageError("soft-irregular: fusion=union joins all layers, and the map has one: add umbra=layers");
+      throw UsageError("soft-irregular: fusion=union joins all layers, but the map has only one: add umbra=layers");
   }
 
   [[nodiscard]] const visibility::MethodDescription& description() const override { return description_; }

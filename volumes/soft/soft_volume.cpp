@@ -41,7 +41,7 @@ constexpr visibility::ChoiceOption kSplit{
     "split",
     {{"1", 1U}, {"2", 2U}, {"3", 3U}},
     1U,
-    "cut a rectangle in split² lights, each with silhouettes and a count of its own"};
+    "divide a rectangle light into split² lights, each with its own silhouettes and count"};
 constexpr visibility::ChoiceOption kTable{
     "coverage",
     {{"analytic", false}, {"table", true}},
@@ -50,14 +50,14 @@ constexpr visibility::ChoiceOption kTable{
 constexpr visibility::ChoiceOption kConstruction{"construction",
                                                  {{"original", Construction::original}, {"tight", Construction::tight}},
                                                  Construction::original,
-                                                 "construction of the wedges, which bound the search"};
-constexpr auto kWedges =
-    wedges_option("processor that builds silhouettes and wedges for each light (tight ones always the host)");
+                                                 "construction of the wedges, which limit the pixels that are tested"};
+constexpr auto kWedges = wedges_option(
+    "processor that builds silhouettes and wedges for each light (tight wedges are always built on the host)");
 constexpr visibility::ChoiceOption kTests{
     "tests",
     {{"none", WedgeTests::none}, {"z", WedgeTests::z}, {"both", WedgeTests::both}},
     WedgeTests::both,
-    "keep footprints of wedges off pixels by depth, and by orientation, too (Lengyel)"};
+    "exclude pixels from the footprints of wedges by depth (z), or also by orientation (both) (Lengyel)"};
 
 enum class Combined { sum, max, product, average, vote };
 constexpr visibility::ChoiceOption kFusion{
@@ -68,25 +68,26 @@ constexpr visibility::ChoiceOption kFusion{
      {"average", Combined::average},
      {"vote", Combined::vote}},
     Combined::sum,
-    "sum: adds the shares hidden by all occluders; max, product, average: combine the shares of single objects by the "
-    "largest, as if independent, or by the middle between largest and sum; vote: adds, with layers by the votes of "
-    "three points of the light"};
+    "sum: adds the shares hidden by all occluders; max, product, average: combine the shares of single objects: the "
+    "largest, as if they were independent, or the mean of largest and sum; vote: as sum, but three points of the light "
+    "vote on the number of layers"};
 
 /// Handling of edges that pass the light's centre within rounding, as a view sample sees them.
 enum class Sides { exact, published };
-constexpr visibility::ChoiceOption kSides{"as",
-                                          {{"repaired", Sides::exact}, {"published", Sides::published}},
-                                          Sides::exact,
-                                          "repaired: decides by exact signs on which side of the light's centre an "
-                                          "edge passes; published: by floats, wrong by a whole layer where they are"};
+constexpr visibility::ChoiceOption kSides{
+    "as",
+    {{"repaired", Sides::exact}, {"published", Sides::published}},
+    Sides::exact,
+    "repaired: decides by exact signs on which side of the light's centre an edge passes; published: decides by "
+    "floats; where they are wrong, V is wrong by a whole layer"};
 
 visibility::MeshVerdict soft_volume_verdict(const mesh::Diagnosis& mesh) {
   return {visibility::Verdict::approximate,
           visibility::reason_with(
-              "the silhouettes of the light's centre stand for all of them, and layers that overlap are added", mesh,
+              "the light centre's silhouettes are used for every light sample, and layers that overlap are added", mesh,
               {{mesh.boundary_edges.count,
-                "boundary edges: the surface counts triangle by triangle, a solid that is "
-                "not closed twice"},
+                "boundary edges: each triangle of the surface counts on its own, and a solid that is not closed counts "
+                "twice"},
                {mesh.zero_area_triangles.count, "triangles without area, which cast no shadow"}})};
 }
 
@@ -169,7 +170,7 @@ class SoftVolume final : public visibility::Method {
     visibility::check_light(description_, light);
     if (split_ > 1) {
       visibility::require_kind(light, visibility::kParallelograms,
-                               "; method soft-volume cuts only rectangles in parts: take split=1");
+                               "; method soft-volume can divide only rectangles: use split=1");
     }
     make_raster(light);
     const std::vector<Light> lights = volumes::light_parts(light, split_);

@@ -37,10 +37,12 @@ constexpr auto kBlendWedges =
     wedges_option("processor that builds silhouettes and wedges for each light, object by object");
 
 visibility::MeshVerdict soft_volume_blend_verdict(const mesh::Diagnosis& mesh) {
-  return {visibility::Verdict::approximate,
-          visibility::reason_with(
-              "the silhouettes of the light's centre stand for all of them, and boxes say how objects overlap", mesh,
-              {{mesh.boundary_edges.count, "boundary edges: what is not closed counts triangle by triangle"}})};
+  return {
+      visibility::Verdict::approximate,
+      visibility::reason_with(
+          "the light centre's silhouettes are used for every light sample, and overlap of objects is estimated by "
+          "boxes",
+          mesh, {{mesh.boundary_edges.count, "boundary edges: each triangle of an open surface counts on its own"}})};
 }
 
 }  // namespace
@@ -50,7 +52,9 @@ visibility::MethodDescription soft_volume_blend_description() {
           .family = visibility::Family::geometry,
           .paper = "Forest, Barthe and Paulin 2006",
           .output = visibility::Output::scalar,
-          .exact_for = "what soft-volume is exact for, if boxes around occluders on a quarter of the light are apart",
+          .exact_for =
+              "cases for which soft-volume is exact, if the boxes around occluders in each quarter of the light do not "
+              "overlap",
           .lights = visibility::kParallelograms,
           .textures = false,
           .options = {kBlendWedges.description()},

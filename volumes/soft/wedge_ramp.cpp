@@ -24,8 +24,9 @@ visibility::MeshVerdict wedge_ramp_verdict(const mesh::Diagnosis& mesh) {
   return {
       visibility::Verdict::approximate,
       visibility::reason_with(
-          "a linear ramp stands for the covered area, the light's centre's silhouettes for all, and layers are added",
-          mesh, {{mesh.boundary_edges.count, "boundary edges: what is not closed counts triangle by triangle"}})};
+          "a linear ramp replaces the covered area, the light centre's silhouettes are used for every light sample, "
+          "and layers are added",
+          mesh, {{mesh.boundary_edges.count, "boundary edges: each triangle of an open surface counts on its own"}})};
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ visibility::MethodDescription wedge_ramp_description() {
           .family = visibility::Family::geometry,
           .paper = "Akenine-Möller and Assarsson 2002",
           .output = visibility::Output::scalar,
-          .exact_for = "nothing but umbra and full light of one occluder with a simple silhouette",
+          .exact_for = "only the umbra and the fully lit region of one occluder with a simple silhouette",
           .lights = visibility::kPlanarLights - visibility::kPolygons,
           .textures = false,
           .options = {},

@@ -66,8 +66,8 @@ double area_within(const LightOutline& outline, const Polygon& polygon) {
 
 const auto kMix = [](const auto& a, const auto& b, double t) { return a + t * (b - a); };
 
-/// Sides shorter than this are skipped: rounding to 2⁻⁴⁸ may turn a side by its own length. Skipping a side changes an
-/// area by no more than the side's length.
+/// Sides shorter than this are skipped: rounding of the ends by 2⁻⁴⁸ turns a side by an angle that exceeds its length.
+/// Skipping a side changes an area by no more than the side's length.
 constexpr double kShortestSide = 0x1p-24;
 
 /// Returns the intersection of two convex polygons: empty, or with positive area.

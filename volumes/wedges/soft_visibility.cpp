@@ -261,7 +261,7 @@ LayerSum SoftVisibility::at(const LitPoint& sample, Viewer viewer, bool at_most_
 }
 
 std::vector<glm::dvec2> SoftVisibility::light_samples() const {
-  PENUMBRA_ASSERT(is_planar(light_.kind), "the samples of a {} have no places in a frame", name_of(light_.kind));
+  PENUMBRA_ASSERT(is_planar(light_.kind), "the light samples of a {} have no frame coordinates", name_of(light_.kind));
   const auto [center, u, v] = visibility::light_frame(light_);
   const double uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v), size = uu * vv - uv * uv;
   std::vector<glm::dvec2> places;

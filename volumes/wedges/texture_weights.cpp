@@ -53,8 +53,8 @@ glm::dvec2 rim_point(double position) {
 TextureWeights::TextureWeights(const visibility::LightTexture& texture)
     : width_(texture.width), height_(texture.height) {
   if (width_ > kMostTexels || height_ > kMostTexels) {
-    throw ResourceError("a light's texture of {}x{} texels; soft-volume takes at most {} along a side", width_, height_,
-                        kMostTexels);
+    throw ResourceError("a light's texture has {}x{} texels; soft-volume supports at most {} along a side", width_,
+                        height_, kMostTexels);
   }
   const double step = 2.0 / width_, row_height = 2.0 / height_, whole = 4 * texture.mean_luminance;
   words_.resize(height_ + 1 + std::size_t{2} * height_ * (width_ + 1));

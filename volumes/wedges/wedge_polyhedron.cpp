@@ -145,7 +145,7 @@ class Cut {
         if (sides_[from] == 0 && sides_[to] == 0) next[to] = from;
       }
     }
-    PENUMBRA_ASSERT(next.size() >= 3, "{} edges on the plane that cuts", next.size());
+    PENUMBRA_ASSERT(next.size() >= 3, "{} edges lie on the cutting plane", next.size());
     std::vector<std::uint32_t> loop;
     for (std::uint32_t at = next.begin()->first; loop.size() < next.size(); at = next.at(at)) loop.push_back(at);
     return loop;
@@ -220,15 +220,15 @@ std::optional<std::string> flaw_of(const Polyhedron& polyhedron) {
     for (std::size_t i = 0; i < face.loop.size(); ++i) {
       const auto edge = std::pair(face.loop[i], face.loop[(i + 1) % face.loop.size()]);
       if (!edges.insert(edge).second)
-        return fmt::format("edge {} {} runs twice in the same direction", edge.first, edge.second);
+        return fmt::format("edge {} {} occurs twice in the same direction", edge.first, edge.second);
     }
   }
   for (const auto& [from, to] : edges) {
     if (!edges.contains({to, from})) return fmt::format("edge {} {} has one face only", from, to);
   }
   if (polyhedron.corners.size() + polyhedron.faces.size() != edges.size() / 2 + 2) {
-    return fmt::format("{} corners, {} edges and {} faces are no ball", polyhedron.corners.size(), edges.size() / 2,
-                       polyhedron.faces.size());
+    return fmt::format("{} corners, {} edges and {} faces do not form a closed surface like a sphere (V - E + F = 2)",
+                       polyhedron.corners.size(), edges.size() / 2, polyhedron.faces.size());
   }
   for (const PolyhedronFace& face : polyhedron.faces) {
     if (!runs_outward(polyhedron, face)) return "a face does not run counter-clockwise seen from outside";

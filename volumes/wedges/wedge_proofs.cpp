@@ -153,10 +153,12 @@ void WedgeProofs::check_outcome(Job& job) const {
              fmt::format("{} with {} planes", name_of(wedge.outcome), wedge.planes.size()));
   }
   if (wedge.outcome == WedgeOutcome::empty && wedge.a != wedge.b) {
-    job.fail(Invariant::outcome, {}, wedge.a, glm::length(wedge.b - wedge.a), "empty, though the edge has a length");
+    job.fail(Invariant::outcome, {}, wedge.a, glm::length(wedge.b - wedge.a),
+             "the outcome is `empty`, though the edge has a length");
   }
   if (wedge.outcome == WedgeOutcome::everywhere && input_.tight && other_separating_direction(job.cast)) {
-    job.fail(Invariant::outcome, {}, wedge.a, 0, "everywhere, though a plane keeps the edge off the light");
+    job.fail(Invariant::outcome, {}, wedge.a, 0,
+             "the outcome is `everywhere`, though a plane separates the edge from the light");
   }
 }
 
@@ -274,7 +276,7 @@ void WedgeProofs::check_half_spaces(Job& job, const Polyhedron& polyhedron) cons
     const bool inside = holds(box_, p) && is_inside(job.wedge, p);
     if (inside == mesh_holds(polyhedron, p)) continue;
     job.fail(Invariant::half_spaces, {}, p, 0,
-             inside ? "inside all half-spaces, outside the mesh" : "inside the mesh only");
+             inside ? "a point is inside all half-spaces, but outside the mesh" : "inside the mesh only");
   }
 }
 

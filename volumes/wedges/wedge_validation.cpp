@@ -51,7 +51,7 @@ class Cover {
       }
       const std::uint32_t source = roots++;
       if (source >= input_.casting.wedges.size() || wedge.source != source) {
-        fail(i, "not the next edge of those requested");
+        fail(i, "this is not the next of the requested edges");
       } else if (wedge.a != input_.casting.wedges[source].a || wedge.b != input_.casting.wedges[source].b) {
         fail(i, "the ends are not those of the edge");
       }
@@ -76,7 +76,7 @@ class Cover {
                          glm::all(glm::lessThanEqual(middle, glm::max(whole.a, whole.b)));
     if (one.a != whole.a || two.a != middle || two.b != whole.b || !between ||
         !mesh::collinear(whole.a, middle, whole.b)) {
-      fail(i, "the pieces together are not the edge");
+      fail(i, "the pieces do not add up to the edge");
     }
   }
 
@@ -90,8 +90,8 @@ class Cover {
   std::vector<std::vector<std::uint32_t>> pieces_;
 };
 
-/// Returns k_e of each edge as carried by the half-edge view's silhouette loops. A loop that is not connected is a
-/// violation. Faces that are not held are `on` in `sides`.
+/// Returns each edge's signed multiplicity k_e, counted along the silhouette loops of the half-edge view. A loop that
+/// is not connected is a violation. Faces that the view does not hold must be `on` in `sides`.
 std::vector<int> carried_by_loops(const Casters& casters, const mesh::HalfEdgeView& surface,
                                   std::span<const mesh::Side> sides, ValidationReport& report) {
   std::vector<int> carried(casters.graph.edges.size(), 0);
@@ -156,7 +156,7 @@ void check_closed_loops(const Casters& casters, const LightHull& light, Validati
          {},
          casters.positions[casters.graph.edges[edge].a],
          0,
-         fmt::format("edge {}: loops carry {}, its triangles make {}", edge, carried[edge], multiplicity)});
+         fmt::format("edge {}: loops have multiplicity {}, its triangles {}", edge, carried[edge], multiplicity)});
   }
 }
 

@@ -24,8 +24,8 @@ class VectorDepthComplexity final : public VectorEdges {
   void prepare_light(const visibility::Light& light) override {
     if (search_ != Search::hierarchy) {
       visibility::require_kind(light, visibility::kPlanarLights,
-                               ": depth-complexity with search=kd-tree or hemicube does planar lights; "
-                               "search=hierarchy does every light");
+                               ": depth-complexity with search=kd-tree or hemicube supports only planar lights; "
+                               "search=hierarchy supports every light");
     }
     structures_ = {};
     VectorEdges::prepare_light(light);
