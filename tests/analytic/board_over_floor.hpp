@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// A floor, a board and a square light, all parallel: which light samples a view sample on the floor sees, and which
-// share of the light, can be written down.
+// A floor, a board and a square light, all parallel: closed forms give which light samples a view sample on the floor
+// sees, and which share of the light.
 
 #include "tests/unit/ray_traced_masks.hpp"
 #include "tests/unit/visibility/scenes.hpp"
@@ -39,9 +39,9 @@ struct BoardPairs {
   std::size_t pairs = 0, hidden = 0, wrong = 0, within_rounding = 0;
 };
 
-/// Masks against the board as stored: a segment p→l is hidden if it crosses the board's height inside the board. Pairs
-/// that cross it within `rounding` of its edge (world units) are counted apart; all that double leaves open of the
-/// crossing itself is a few of its own ulps.
+/// Compares masks with the board as stored: a segment p→l is hidden if it crosses the board's height inside the board.
+/// Pairs that cross it within `rounding` of its edge (world units) are counted apart; computed in double, the crossing
+/// itself is off by a few ulps only.
 inline BoardPairs compare_with_board(const Stage& stage, const Masks& masks, double rounding) {
   glm::dvec3 lower(stage.floats.positions.back()), upper = lower;
   for (const std::uint32_t triangle : {2U, 3U}) {
@@ -77,8 +77,8 @@ inline void expect_board(const BoardPairs& found, std::size_t least_hidden, doub
   EXPECT_LE(static_cast<double>(found.within_rounding), most_within_rounding * static_cast<double>(found.pairs));
 }
 
-/// The share of the light [−1, 1]² that a board of ±`half` hides from p = (x, 0, z): seen from there its corners fall
-/// on the light's plane at p + (corner − p) · light height / board height, and stay an axis-aligned rectangle.
+/// The share of the light [−1, 1]² that a board of ±`half` hides from p = (x, 0, z): seen from p the board's corners
+/// fall on the light's plane at p + (corner − p) · light height / board height, and stay an axis-aligned rectangle.
 inline double share_hidden_by_board(const glm::dvec3& p, const glm::dvec2& half) {
   const double scale = kBoardLightHeight / kBoardHeight;
   const auto overlap = [&](double half_size, double at) {
@@ -89,7 +89,7 @@ inline double share_hidden_by_board(const glm::dvec3& p, const glm::dvec2& half)
   return overlap(half.x, p.x) * overlap(half.y, p.z);
 }
 
-/// V on the floor tends to the area as the light gets more samples in rows.
+/// Expects that V on the floor converges to the exact area as the light gets more samples (in rows).
 inline void expect_board_share_converges(const std::function<Masks(const Stage&)>& masks_of) {
   const glm::dvec2 size(0.19, 0.3);
   double previous = 1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coverage integral against areas that can be written down.
+// The coverage integral against areas in closed form.
 //
-// Tolerance: an area is a sum of a handful of terms below 4, each off by a few ulps of 1, of ends off by a few ulps of
-// their size: 1e-12 is thousands of ulps and far below what a wrong edge would cost.
+// Tolerance: an area is a sum of a handful of terms below 4, each off by a few ulps of 1, whose ends are off by a few
+// ulps of their size: 1e-12 is thousands of ulps and far below what a wrong edge would cost.
 
 #include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
@@ -90,7 +90,7 @@ TEST(CoverageClosedForm, ATwoSidedLightLooksTheSameFromBehind) {
 }
 
 TEST(CoverageClosedForm, AnEdgeThroughTheCentreIsDecidedAsTheCountIs) {
-  // The board's edge x = 0 at half height appears from x at −x of the light: through the centre, and an ulp beside it.
+  // From x the board's edge x = 0, at half height, appears at −x on the light: through the centre, or an ulp beside it.
   for (const float x : {0.0F, 0x1p-40F, -0x1p-40F, 0x1p-20F, -0x1p-20F}) {
     scenes::Scene scene = half_plane(0);
     scene.lights.push_back(tests::ceiling_light(4, 1));
@@ -99,7 +99,7 @@ TEST(CoverageClosedForm, AnEdgeThroughTheCentreIsDecidedAsTheCountIs) {
       const CoverageStage stage(scene);
       for (const LayerSum& sum : {stage.center({x, 0, 0}), stage.receiver({x, 0, 0})}) {
         EXPECT_FALSE(sum.moved);
-        const double slope = disk ? 2 / std::numbers::pi : 0.5;  // chord through the centre, of the area
+        const double slope = disk ? 2 / std::numbers::pi : 0.5;  // the chord through the centre over the area
         EXPECT_NEAR(sum.visibility, 0.5 - slope * static_cast<double>(x), kRounding) << x << " " << disk;
       }
     }
@@ -107,7 +107,7 @@ TEST(CoverageClosedForm, AnEdgeThroughTheCentreIsDecidedAsTheCountIs) {
 }
 
 TEST(CoverageClosedForm, AVertexAtTheCentreMovesTheReferencePoint) {
-  // A quadrant's corner, and a bow tie of two quadrants that touch there.
+  // One quadrant with its corner at the centre, and a bow tie of two quadrants that touch there.
   for (const bool tie : {false, true}) {
     for (const bool disk : {false, true}) {
       std::vector<tests::Corners> boards = tests::quad({4, 2, 4}, {4, 0, 0}, {0, 0, 4});
@@ -127,8 +127,8 @@ TEST(CoverageClosedForm, AVertexAtTheCentreMovesTheReferencePoint) {
 }
 
 TEST(CoverageClosedForm, ASolidIsOneLayerFromOutsideAndFromWithin) {
-  // A box over the origin whose top is level at 2 and whose bottom, at 1, is seen twice as large as the light: from
-  // below it hides all, once; and a light within a closed room sees through no wall.
+  // A box over the origin with its top at 2 and its bottom at 1. From below, the bottom looks twice as large as the
+  // light and hides all of it, as one layer. A light within a closed room is hidden by no wall.
   scenes::Scene scene = area_scene(tests::corners_of(mesh::make_box({0, 1.5, 0}, {2, 0.5, 2})));
   scene.lights.push_back(tests::ceiling_light(4, 1));
   const LayerSum below = CoverageStage(scene).center({0, 0, 0});
@@ -138,7 +138,7 @@ TEST(CoverageClosedForm, ASolidIsOneLayerFromOutsideAndFromWithin) {
   room.lights.push_back(tests::ceiling_light(4, 1));
   EXPECT_EQ(CoverageStage(room).center({0, 0, 0}).visibility, 1);
   EXPECT_EQ(CoverageStage(room).receiver({0, 0, 0}).visibility, 1);
-  // The light is behind a wall, once, as seen from outside of the room.
+  // From outside the room the light is behind one wall.
   EXPECT_EQ(CoverageStage(room).center({20, 0, 0}).constant, 1);
   EXPECT_EQ(CoverageStage(room).center({20, 0, 0}).visibility, 0);
 }

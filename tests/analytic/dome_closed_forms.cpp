@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes of one radiance against form factors that can be written down (J. Howell, A catalog of radiation heat transfer
-// configuration factors): V is one minus that of what hides the sky. Areas are held to rounding, masks to what so many
-// light samples can say.
+// Domes of one radiance against closed-form factors (J. Howell, A catalog of radiation heat transfer configuration
+// factors): V is one minus the form factor of what hides the sky. Areas must agree up to rounding, masks up to the
+// resolution of their light samples.
 
 #include "tests/unit/dome_stage.hpp"
 #include "visibility/dome_faces.hpp"
@@ -19,13 +19,15 @@ namespace {
 
 using std::numbers::pi;
 
-/// A rectangle that stands on the element's plane, from its foot `a` to one side and `b` up, `c` away.
+/// The form factor of a rectangle that stands on the element's plane at distance `c`: from its foot it extends `a` to
+/// one side and `b` up.
 double standing(double a, double b, double c) {
   const double far = std::hypot(b, c);
   return (std::atan(a / c) - c / far * std::atan(a / far)) / (2 * pi);
 }
 
-/// A rectangle parallel to the element, `c` over it, from over the element `a` and `b` to its sides. Odd in both.
+/// The form factor of a rectangle parallel to the element at height `c`: from the point above the element it extends
+/// `a` and `b` to the sides. Odd in both.
 double parallel(double a, double b, double c) {
   const double s = a / c, t = b / c, u = std::hypot(1.0, s), v = std::hypot(1.0, t);
   return (s / u * std::atan(t / u) + t / v * std::atan(s / v)) / (2 * pi);
@@ -50,7 +52,8 @@ struct Tolerance {
   double whole = 1;  ///< the form factor of all of the dome
 };
 
-/// V of every method at floor pixels; `expected` of the point, of one radiance all around or of the upper half.
+/// Checks V of every method at floor pixels; `expected` gives V at a point, under one radiance all around or in the
+/// upper half.
 void expect_shares(const scenes::Scene& scene, const std::function<double(const glm::dvec3&)>& expected,
                    const Tolerance& tolerance = {}) {
   const Stage stage(scene, 24, 24, {1024, 0, 0, visibility::SamplePattern::sobol, 0});
@@ -79,7 +82,7 @@ TEST(DomeClosedForm, APlaneSeesAllOfHalfASphere) {
     expect_shares(floor_scene(dome), [](const glm::dvec3&) { return 1.0; }, {0, 0});
 }
 
-/// Half a dome that leans by φ gives (1 + cos φ) / 2 of what a whole one does, and V of a plane is 1 all the same.
+/// Half a dome that leans by φ has (1 + cos φ) / 2 of a whole dome's form factor; V of a plane is still 1.
 TEST(DomeClosedForm, HalfADomeThatLeansIsSeenByItsCosine) {
   const glm::dvec3 up = glm::normalize(glm::dvec3(0.5, 1, 0.25));
   const Stage stage(floor_scene({.up = up, .half = true}), 8, 8, {64, 0, 0, visibility::SamplePattern::rows, 0});
@@ -104,7 +107,7 @@ TEST(DomeClosedForm, AWallHidesItsFormFactor) {
   }
 }
 
-/// V tends to (1 + cos φ) / 2 as the wall becomes long, φ the angle up to its edge.
+/// V tends to (1 + cos φ) / 2 as the wall becomes long; φ is the angle up to its edge.
 TEST(DomeClosedForm, ALongWallLeavesTheCosineOfItsEdge) {
   constexpr double kHeight = 1, kLong = 4096, kAt = 1.5;
   scenes::Scene scene = floor_scene({});
@@ -139,7 +142,7 @@ TEST(DomeClosedForm, ABoxLetsInWhatItsHoleShows) {
   }
 }
 
-/// (R / D)² cos θ of a sphere above the plane; of its faces a share of 1 − O(1 / rings²).
+/// A sphere above the plane hides (R / D)² cos θ; its faces hide a share of 1 − O(1 / rings²) of that.
 TEST(DomeClosedForm, ASphereHidesItsSolidAngleTimesTheCosine) {
   constexpr double kRadius = 0.5;
   const glm::dvec3 center(0.2, 1, 0.1);
@@ -154,7 +157,7 @@ TEST(DomeClosedForm, ASphereHidesItsSolidAngleTimesTheCosine) {
                 {2e-3, 0.02});
 }
 
-/// Half a dome around +X lights a floor from one side: a wall there takes (of a long one) all below its edge.
+/// Half a dome around +X lights a floor from one side: a long wall on that side hides everything below its edge.
 TEST(DomeClosedForm, HalfADomeFromASideIsHiddenByAWallThere) {
   constexpr double kHeight = 1, kLong = 4096, kAt = 1.5;
   scenes::Scene scene = floor_scene({.up = {1, 0, 0}, .half = true});
@@ -162,7 +165,7 @@ TEST(DomeClosedForm, HalfADomeFromASideIsHiddenByAWallThere) {
   expect_shares(scene,
                 [&](const glm::dvec3& p) {
                   const double far = kAt - p.x;
-                  // The visible part goes from the edge up to the zenith: cos φ of the half, of 1/2.
+                  // The visible part goes from the edge up to the zenith: cos φ of the half dome, which itself is 1/2.
                   return far > 0 ? far / std::hypot(far, kHeight) : 1.0;
                 },
                 {1e-5, 0.03, 0.5});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ssao and hbao against what they give by hand: on planes, at the bottom of valleys and beside a wall; and what they
-// refuse.
+// Tests ssao and hbao against values computed by hand (on planes, at the bottom of valleys and beside a wall), and what
+// they refuse.
 
 #include "maps/screen/methods.hpp"
 #include "tests/unit/dome_stage.hpp"
@@ -39,7 +39,7 @@ Stage valley(double left, double right, double height_seen = 4) {
   return {scene, 128, 128, light_samples(16)};
 }
 
-/// The option `radius` for this length.
+/// The value of the option `radius` for this length.
 std::string radius(const Stage& stage, double length) {
   const double diagonal = glm::length(glm::dvec3(stage.floats.upper) - glm::dvec3(stage.floats.lower));
   return fmt::format("{:.17g}", length / diagonal);
@@ -59,7 +59,8 @@ TEST(ScreenOcclusion, APlaneShadesNothing) {
     for (const float v : visibility_of(maps::make_hbao({{"dither", dither}, {"angleBias", "0"}}), level))
       ASSERT_NEAR(v, 1, 1e-6);
   }
-  // Tilted, and in perspective: horizons are the plane's own; of a ball pixels' depths cut off other halves.
+  // A tilted plane in perspective: hbao's horizons are the plane's own; ssao's pixel depths do not cut the ball exactly
+  // in half.
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {40, 0, 0}, {0, 0, 40});
   scene.lights.push_back(dome_light());
@@ -81,8 +82,8 @@ double height_at(double x, double left, double right) {
   return x < 0 ? -x * std::tan(left) : x * std::tan(right);
 }
 
-/// V of a ball around the valley's point at x, by volume: in cells of the plane across the valley, of which none lies
-/// on a diagonal.
+/// V of a ball around the valley's point at x, by volume. The cells of the plane across the valley are chosen so that
+/// none lies on a diagonal.
 double free_of_ball(double x, double radius, double left, double right) {
   constexpr int kAcross = 511, kUp = 508;
   double inside = 0, free = 0;
@@ -91,7 +92,7 @@ double free_of_ball(double x, double radius, double left, double right) {
     for (int k = 0; k < kUp; ++k) {
       const double across = middle(i, kAcross), up = middle(k, kUp), rest = 1 - across * across - up * up;
       if (rest <= 0) continue;
-      const double along = std::sqrt(rest);  // the valley is level along itself
+      const double along = std::sqrt(rest);  // the valley is level along its own direction
       inside += along;
       const double there = height_at(x + radius * across, left, right);
       if (height_at(x, left, right) + radius * up >= there) free += along;
@@ -100,8 +101,8 @@ double free_of_ball(double x, double radius, double left, double right) {
   return std::min(1.0, 2 * free / inside);
 }
 
-/// N points that fill a ball evenly: within the distance of neighbours from a face of the part that is free there are
-/// about N^2/3, and of these so many are on the wrong side as the root of that: a share of N^-2/3 of all. V is twice
+/// Error of N points that fill a ball evenly. About N^2/3 of them are within the distance of neighbours from a face of
+/// the free part, and about the square root of that number is on the wrong side: a share of N^-2/3 of all. V is twice
 /// the share.
 double off_of_points(double count) {
   return 2 * std::pow(count, -2.0 / 3);
@@ -109,14 +110,15 @@ double off_of_points(double count) {
 
 struct Search {
   int directions = 32, steps = 16;
-  double pixel = 0;  ///< a sample is at the centre of its pixel, if this is a length
+  double pixel = 0;  ///< if not 0, samples are at the centres of pixels this wide
   std::function<double(double)> weight = [](double) { return 1.0; };
 };
 
-/// 1 less the mean over directions of what the horizon, found at so many steps over the radius, rises over the tangent.
+/// Returns 1 minus the mean, over directions, of the horizon's rise above the tangent; horizons are found at `steps`
+/// places.
 double below_horizons(double x, double radius, const glm::dvec2& slopes, const Search& search) {
   const auto height = [&](double at) { return height_at(at, slopes.x, slopes.y); };
-  const auto to_centre = [&](double to) {  // from the centre of the own pixel
+  const auto to_centre = [&](double to) {  // from the centre of the receiver's pixel
     return search.pixel > 0 ? search.pixel * std::floor(to / search.pixel + 0.5) : to;
   };
   double hidden = 0;
@@ -128,7 +130,7 @@ double below_horizons(double x, double radius, const glm::dvec2& slopes, const S
       const double across = to_centre(far * std::cos(turn)), along = to_centre(far * std::sin(turn));
       const double rise = height(x + across) - height(x), away = std::hypot(across, along, rise);
       if (away == 0 || away >= radius) continue;
-      const double tangent = std::tan(slopes.y) * across;  // of the own plane, on which x is
+      const double tangent = std::tan(slopes.y) * across;  // of the receiver's own plane
       const double base = std::max(horizon, tangent / std::hypot(across, along, tangent));
       if (rise / away <= base) continue;
       hidden += search.weight(away / radius) * (rise / away - base);
@@ -138,15 +140,15 @@ double below_horizons(double x, double radius, const glm::dvec2& slopes, const S
   return 1 - hidden / search.directions;
 }
 
-/// A ball at the bottom of a valley of angle φ is free in φ/2π of it, so V = φ/π; and the directions between the
-/// horizons are as many. Light comes by the cosine: the exact V is (1 − cos φ)/2. Pixels' centres are half a pixel from
+/// At the bottom of a valley of angle φ, φ/2π of a ball is free, so V = φ/π; φ/π is also the share of the directions
+/// between the horizons. The exact V, weighted by the cosine, is (1 − cos φ)/2. Pixels' centres are half a pixel from
 /// the bottom, and horizons are those of pixels' centres.
 TEST(ScreenOcclusion, AValleyIsFreeByItsAngle) {
   for (const auto& [left, right] : {std::pair(45.0, 45.0), std::pair(0.0, 45.0), std::pair(20.0, 60.0)}) {
     const double angle = 180 - left - right, radius_seen = 0.9;
     const glm::dvec2 slopes(glm::radians(left), glm::radians(right));
     const auto free = [&](double x) { return free_of_ball(x, radius_seen, slopes.x, slopes.y); };
-    EXPECT_NEAR(free(0), angle / 180, 1e-3);  // half a cell along the faces
+    EXPECT_NEAR(free(0), angle / 180, 1e-3);  // the error is half a cell along the faces
     const Stage stage = valley(slopes.x, slopes.y);
     const MethodOptions common{{"radius", radius(stage, radius_seen)}, {"dither", "off"}};
     MethodOptions options = common;
@@ -161,7 +163,7 @@ TEST(ScreenOcclusion, AValleyIsFreeByItsAngle) {
     EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128),
                 below_horizons(kPixel / 2, radius_seen, slopes, {.pixel = kPixel}), 1e-5)
         << angle;
-    // Dithered, few samples say the same on the whole: 16 each at the 4 × 4 pixels of the mean.
+    // With dithering, few samples give the same mean: 16 at each of the 4 × 4 pixels that are averaged.
     double mean = 0;
     for (const double x : {-1.5, -0.5, 0.5, 1.5}) mean += free(x * kPixel) / 4;
     EXPECT_NEAR(at_the_bottom(visibility_of(maps::make_ssao({{"radius", radius(stage, radius_seen)}}), stage), 128),
@@ -170,8 +172,8 @@ TEST(ScreenOcclusion, AValleyIsFreeByItsAngle) {
   }
 }
 
-/// A wall at a right angle, δ radii away, takes a cap of the ball off, half of which is above the floor: V = 1 −
-/// (2 − 3δ + δ³)/4.
+/// A wall at a right angle, δ radii away, cuts a cap off the ball, half of which is above the floor: V = 1 − (2 − 3δ +
+/// δ³)/4.
 TEST(ScreenOcclusion, AWallTakesACapOfTheBall) {
   const double slope = std::numbers::pi / 4;
   const Stage stage = valley(slope, slope);
@@ -186,7 +188,7 @@ TEST(ScreenOcclusion, AWallTakesACapOfTheBall) {
   }
 }
 
-/// The weight of a horizon falls off with the distance of its cause: at the bottom of a valley the first step, at a
+/// The weight of a horizon falls off with the distance of its cause. At the bottom of a valley the first step, at a
 /// share s of the radius, raises the whole horizon.
 TEST(ScreenOcclusion, HorizonsCountByTheirDistance) {
   const double slope = std::numbers::pi / 4, radius_seen = 1.1;
@@ -196,7 +198,7 @@ TEST(ScreenOcclusion, HorizonsCountByTheirDistance) {
                         {"directions", "64"},
                         {"steps", "1"},
                         {"angleBias", "0"}};
-  // One step, as far as the radius in the picture: on the other side it is farther than the radius in space.
+  // One step, a whole radius away in the picture: on the other slope that is farther than the radius in space.
   EXPECT_GT(at_the_bottom(visibility_of(maps::make_hbao(options), stage), 128), 0.9);
   options["steps"] = "4";
   const auto check = [&](const char* attenuation, const std::function<double(double)>& weight) {
@@ -210,7 +212,8 @@ TEST(ScreenOcclusion, HorizonsCountByTheirDistance) {
   check("none", [](double) { return 1.0; });
 }
 
-/// A ball in front of a far plane darkens it, as published; not where hiding has a range.
+/// A square in front of a far plane darkens the plane around it, as in the published method; with the option `range` it
+/// does not.
 TEST(ScreenOcclusion, RimsBehindObjectsAreThePapers) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
@@ -225,7 +228,7 @@ TEST(ScreenOcclusion, RimsBehindObjectsAreThePapers) {
   none["range"] = "on";
   const std::vector<float> dark = visibility_of(maps::make_ssao(rim), stage),
                            light = visibility_of(maps::make_ssao(none), stage);
-  const std::size_t beside = 32 * 64 + 32 + 9;  // 0.06 beyond the square
+  const std::size_t beside = 32 * 64 + 32 + 9;  // 0.06 outside the square
   EXPECT_LT(dark[beside], 0.75);
   EXPECT_EQ(light[beside], 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact areas against areas that can be written down.
+// Exact areas against areas in closed form.
 //
 // Tolerance: the sweep adds at most a few hundred slabs of area ≤ 4 whose lengths are off by a few ulps of 1: 1e-12 is
 // a thousand times that and far below what a wrong edge would cost.
@@ -85,7 +85,7 @@ TEST(ExactAreaClosedForm, ManyDepthsCountOnceWhereTheyOverlap) {
     const AreaStage stage(scene);
     for (int i = 0; i < 20; ++i) {
       const glm::vec3 p = random_floor_point(random);
-      // Each cell of the grid of all sides is inside a rectangle or outside.
+      // The sides of all rectangles form a grid; each of its cells is wholly inside or outside each rectangle.
       std::set<double> xs = {-1, 1}, zs = {-1, 1};
       std::vector<Box2> seen;
       for (const auto& [box, height] : boxes) {
@@ -117,12 +117,12 @@ TEST(ExactAreaClosedForm, AHalfPlaneInAnyDirectionHidesItsSideOfTheLight) {
     if (a * a + b * b < 0.25) continue;  // the triangle is not large enough for an edge that far away
     const glm::dvec3 along(-b, 0, a), into(a, 0, b);
     const glm::dvec3 on_edge = c / (a * a + b * b) * into + glm::dvec3(0, 2, 0);
-    // One triangle whose long side is the edge; its two ends are rounded to float, by 1e-6 at most, at distance 16.
+    // One triangle whose long side is the edge; the side's ends, 16 away, are rounded to float, by 1e-6 at most.
     const glm::dvec3 unit = along / std::hypot(a, b), inward = into / std::hypot(a, b);
     scenes::Scene scene = area_scene({{on_edge - 16.0 * unit, on_edge + 16.0 * unit, on_edge + 16.0 * inward}});
     scene.lights.push_back(tests::ceiling_light(kLightHeight, 1));
     const AreaStage stage(scene);
-    // The square's corners to the visible side, clipped.
+    // The part of the square on the edge's visible side.
     std::vector<glm::dvec2> square = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, left;
     const auto height = [&](const glm::dvec2& q) { return 2 * c - a * q.x - b * q.y; };
     for (std::size_t k = 0; k < 4; ++k) {
@@ -135,14 +135,14 @@ TEST(ExactAreaClosedForm, AHalfPlaneInAnyDirectionHidesItsSideOfTheLight) {
       const glm::dvec2 &q = left[k], &r = left[(k + 1) % left.size()];
       doubled += q.x * r.y - q.y * r.x;
     }
-    // The edge, seen twice as large, is moved by up to 4e-6 along at most 2√2: 1.2e-5 of 4.
+    // The edge is seen twice as large, so it is off by up to 4e-6, along at most 2√2: an area of 1.2e-5 out of 4.
     EXPECT_NEAR(stage.visibility({0, 0, 0}), doubled / 8, 3e-6) << a << " " << b << " " << c;
   }
 }
 
 TEST(ExactAreaClosedForm, TheHorizonHidesWhatIsBelowIt) {
-  // The light stands upright at x = 4, from y = −1 to 1; the floor at 0 lets the upper half through. With the light
-  // moved up by h the share above is (1 + h) / 2, and a board across z ≥ 0 hides half of that.
+  // The light stands upright at x = 4, from y = −1 to 1; the floor's horizon at 0 leaves its upper half. With the light
+  // moved up by h the share above the horizon is (1 + h) / 2, and a board across z ≥ 0 hides half of that.
   for (const double h : {-0.75, -0.25, 0.0, 0.5}) {
     for (const bool hidden : {false, true}) {
       std::vector<tests::Corners> boards;
@@ -166,7 +166,7 @@ TEST(ExactAreaClosedForm, ATwoSidedLightLooksTheSameFromBehind) {
 }
 
 TEST(ExactAreaClosedForm, PolygonLights) {
-  // A triangle light, right angle at 0, and from p = 0 a board over x ≥ 0.25 at half height: x ≥ 0.5 of it is hidden.
+  // A triangle light with its right angle at 0. A board over x ≥ 0.25 at half height hides its part x ≥ 0.5 from p = 0.
   scenes::Scene scene = area_scene(tests::quad({8.25, 2, 0}, {8, 0, 0}, {0, 0, 16}));
   scene.lights.emplace_back().shape = scenes::Polygon{{{0, 4, 0}, {1, 4, 0}, {0, 4, 1}}};
   EXPECT_NEAR(AreaStage(scene).visibility({0, 0, 0}), 0.75, kRounding);
@@ -187,9 +187,9 @@ double segment_share(double c) {
 }
 
 TEST(ExactAreaClosedForm, DiskAndSphereLightsLoseACircularSegment) {
-  // A board over x ≥ c at half height hides, from p = 0, x ≥ 2 c of a disk of radius 1: through the centre, along a
-  // tangent (all or nothing), and a lattice step beside it. p sees a sphere as the disk at its tangents; this sphere's
-  // disk has radius 1 at height 4, as the light's disk has: d − r²/d = 4, r √(1 − r²/d²) = 1.
+  // A board over x ≥ c at half height hides, from p = 0, x ≥ 2 c of a disk of radius 1. The edge passes through the
+  // centre, along a tangent (all or nothing), or one lattice step beside these. p sees a sphere as the disk of its
+  // tangents; this sphere's disk has radius 1 at height 4, as the light's disk has: d − r²/d = 4, r √(1 − r²/d²) = 1.
   for (const double c : {-0.5, -0.484375, -0.375, 0.0, 0.125, 0.25, 0.484375, 0.5}) {
     const double visible = 1 - segment_share(2 * c);
     EXPECT_NEAR(disk_behind({c, 16 + c, -16, 16}), visible, kRounding) << c;
@@ -203,8 +203,8 @@ TEST(ExactAreaClosedForm, DiskAndSphereLightsLoseACircularSegment) {
 
 TEST(ExactAreaClosedForm, BoardsInsideAndAcrossADisk) {
   using std::numbers::pi;
-  // Boards inside the disk, with corners on the rim where that is possible (¾ and √7/4 cannot: a step inside), across
-  // the rim, and around it.
+  // Boards inside the disk, with corners on the rim where floats allow it (¾ and √7/4 do not: those are a step inside),
+  // boards across the rim, and boards around the disk.
   EXPECT_NEAR(disk_behind({-0.25, 0.25, -0.25, 0.25}), 1 - 1 / pi, kRounding);
   EXPECT_NEAR(disk_behind({-0.25, 0.125, -0.375, 0.0625}), 1 - 0.75 * 0.875 / pi, kRounding);
   for (const double a : {0.75, 0.875, 0.984375})  // a square of half side a: four segments are left
@@ -213,12 +213,13 @@ TEST(ExactAreaClosedForm, BoardsInsideAndAcrossADisk) {
   EXPECT_NEAR(disk_behind({0, 16, 0, 16}), 0.75, kRounding) << "a corner at the centre";
   EXPECT_NEAR(disk_behind({0, 0.5, -16, 16}), 0.5, kRounding) << "from the centre to a tangent";
   EXPECT_NEAR(disk_behind({0.25, 0.375, -16, 16}), 1 - segment_share(0.5) + segment_share(0.75), kRounding);
-  // Corners on the rim, 3 : 4 : 5 as near as floats hold them: outside by 2.4e-8, with an area of its square.
+  // Corners on the rim with sides 3 : 4 : 5, as near as floats come: outside by 2.4e-8, which costs an area of the
+  // order of its square.
   EXPECT_NEAR(disk_behind({-0.3F, 0.3F, -0.4F, 0.4F}), 1 - 4.0 * 0.6F * 0.8F / pi, kRounding);
 }
 
 TEST(ExactAreaClosedForm, TrianglesInADisk) {
-  // Inscribed as far as the lattice goes; and many that meet at the centre, each a wedge.
+  // Triangles that are inscribed as exactly as the lattice allows, and wedges that meet at the centre.
   const auto behind = [](const std::vector<tests::Corners>& triangles) {
     scenes::Scene scene = area_scene(triangles);
     scene.lights.emplace_back().shape = scenes::Disk{{0, 4, 0}, {0, -1, 0}, 1};
@@ -237,7 +238,7 @@ TEST(ExactAreaClosedForm, TrianglesInADisk) {
 TEST(ExactAreaClosedForm, TheHorizonCutsADisk) {
   scenes::Scene scene = area_scene({});
   scene.lights.emplace_back().shape = scenes::Disk{{0, 0, 4}, {0, 0, -1}, 1};
-  for (const double height : {-0.75, -0.5, 0.0, 0.25, 0.5}) {  // the floor is y = 0, the light stands upright
+  for (const double height : {-0.75, -0.5, 0.0, 0.25, 0.5}) {  // horizon at y = 0; the light stands upright
     std::get<scenes::Disk>(scene.lights[0].shape).center.y = height;
     EXPECT_NEAR(AreaStage(scene).visibility({0.25, 0, 0}), 1 - segment_share(height), kRounding) << height;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form factors against closed forms of others (J. Howell, A Catalog of Radiation Heat Transfer Configuration Factors),
+// Form factors against published closed forms (J. Howell, A Catalog of Radiation Heat Transfer Configuration Factors),
 // against quadrature, and against one another.
 
 #include "visibility/lights/form_factor.hpp"
@@ -29,14 +29,14 @@ Quad quad(const glm::dvec3& c, const glm::dvec3& u, const glm::dvec3& v) {
   return {c - u - v, c + u - v, c + u + v, c - u + v};
 }
 
-/// Howell C-11: an element and a parallel rectangle a × b at the distance c, one corner on the element's normal.
+/// Howell C-11: an element and a parallel rectangle a × b at distance c, with one corner on the element's normal.
 double parallel_corner(double a, double b, double c) {
   const double x = a / c, y = b / c, rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
   return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * pi);
 }
 
-/// Howell C-12: an upright rectangle, b wide and a high, that stands on the element's plane at the distance c, a corner
-/// nearest.
+/// Howell C-12: an upright rectangle, b wide and a high, that stands on the element's plane at distance c; its nearest
+/// point is a corner.
 double upright_corner(double a, double b, double c) {
   const double diagonal = std::hypot(a, c);
   return (std::atan2(b, c) - c / diagonal * std::atan2(b, diagonal)) / (2 * pi);
@@ -53,7 +53,7 @@ TEST(FormFactor, OfAParallelRectangle) {
 }
 
 TEST(FormFactor, OfAnUprightRectangleDownToContact) {
-  // The element touches the light as c → 0: 1/4 for one corner, 1/2 between two.
+  // As c → 0 the element touches the light: 1/4 at one of its corners, 1/2 between two.
   for (const double c : {5.0, 1.0, 0.1, 1e-3, 1e-6, 1e-12, 1e-20, 1e-30}) {
     const double expected = 2 * upright_corner(1.5, 0.75, c);
     // The rectangle stands at x = c and faces −x; u × v points to +x, away from the element.
@@ -70,7 +70,8 @@ TEST(FormFactor, WhatIsBelowTheHorizonDoesNotCount) {
 }
 
 TEST(FormFactor, FarAwayIsASmallSolidAngle) {
-  // area cos cos / π d², off by (size/d)² relatively, and by a few ulps of d/size: form_factor.hpp.
+  // Expected: area cos cos / π d², with a relative error of (size/d)² and of a few ulps of d/size (see
+  // form_factor.hpp).
   const glm::dvec3 toward = glm::normalize(glm::dvec3(1, 2, 3));
   const glm::dvec3 u = glm::normalize(glm::cross(toward, kUp)), v = glm::cross(toward, u);  // u × v = toward
   for (const double d : {1e3, 1e5, 1e7, 1e9}) {
@@ -95,7 +96,7 @@ TEST(FormFactor, AnElementInTheLightsPlaneOrOnItsEdgeGetsNothingWrong) {
   EXPECT_EQ(form_factor_term({{1, 0, 1}, {1, 0, 1}, {0, 0, 0}}, kUp), 0);
 }
 
-/// Gauss's rule with 5 × 5 points on a box of (s, t); boxes are cut in four until that changes nothing any more.
+/// Gauss's rule with 5 × 5 points on a box of (s, t); boxes are cut in four until the result no longer changes.
 double integrate(const std::function<double(double, double)>& f, std::array<double, 4> box, double tolerance) {
   constexpr std::array<double, 5> kAt{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
                                       0.9061798459386640};
@@ -133,7 +134,7 @@ TEST(FormFactor, IsTheIntegralOfTheCosines) {
     glm::dvec3 u = vector(), v = vector();
     const glm::dvec3 normal = glm::cross(u, v);
     const double h = glm::dot(normal, c) / glm::length(normal);
-    if (std::abs(h) < 0.15) continue;  // the quadrature's limit, not the closed form's
+    if (std::abs(h) < 0.15) continue;  // too close for the quadrature; the closed form has no such limit
     if (h < 0) std::swap(u, v);
     const auto f = [&](double s, double t) {
       const glm::dvec3 d = c + s * u + t * v;
@@ -144,7 +145,7 @@ TEST(FormFactor, IsTheIntegralOfTheCosines) {
     const bool above = std::ranges::all_of(corners, [&](const glm::dvec3& q) { return glm::dot(n, q) >= 0; });
     const bool below = std::ranges::all_of(corners, [&](const glm::dvec3& q) { return glm::dot(n, q) <= 0; });
     cut += !above && !below ? 1 : 0;
-    // The function f has a kink along a horizon; boxes there stop at a thousandth, where f is small.
+    // The function f has a kink along a horizon; subdivision stops there at boxes of a thousandth, where f is small.
     EXPECT_NEAR(form_factor(corners, n), integrate(f, {-1, 1, -1, 1}, 1e-10), above ? 1e-9 : 1e-6)
         << "seed " << kSeed << ", round " << round;
   }
@@ -165,7 +166,7 @@ TEST(FormFactor, PiecesAddUpAndAnEdgeRunBackwardIsTheNegative) {
     for (std::size_t i = 0; i < 4; ++i) {
       sum += form_factor(std::array<glm::dvec3, 3>{whole[i], whole[(i + 1) % 4], middle}, n);
     }
-    // Inner edges cancel up to a dozen additions of numbers below 1/2.
+    // Inner edges cancel except for the rounding of up to a dozen additions of numbers below 1/2.
     EXPECT_NEAR(sum, form_factor(whole, n), 12 * kUlp) << "seed " << kSeed << ", round " << round;
     const FormFactorEdge edge{a, b, b - a}, back{b, a, a - b};
     EXPECT_EQ(form_factor_term(edge, n), -form_factor_term(back, n));
@@ -175,8 +176,8 @@ TEST(FormFactor, PiecesAddUpAndAnEdgeRunBackwardIsTheNegative) {
 double polygonal(const FormFactorDisk& disk, const glm::dvec3& n, int sides) {
   const glm::dvec3 z = glm::dot(disk.normal, disk.center) < 0 ? -disk.normal : disk.normal;
   const glm::dvec3 u = glm::normalize(glm::cross(z, std::abs(z.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
-  const glm::dvec3 v = glm::cross(z, u);  // u × v away from the element
-  const double step = 2 * pi / sides, radius = disk.radius * std::sqrt(step / std::sin(step));  // of equal area
+  const glm::dvec3 v = glm::cross(z, u);  // so that u × v points away from the element
+  const double step = 2 * pi / sides, radius = disk.radius * std::sqrt(step / std::sin(step));  // for equal area
   std::vector<glm::dvec3> corners;
   for (int i = 0; i < sides; ++i) {
     corners.push_back(disk.center + radius * (std::cos(i * step) * u + std::sin(i * step) * v));
@@ -188,12 +189,12 @@ TEST(FormFactor, OfADiskStraightAboveAndAtTheHorizon) {
   for (const double h : {1e-3, 0.5, 2.0, 1e3}) {
     EXPECT_NEAR(form_factor(FormFactorDisk{{0, 0, h}, {0, 0, -1}, 0.5}, kUp), 0.25 / (0.25 + h * h), 8 * kUlp) << h;
   }
-  // Facing the element, which then is on the axis within rounding; cut by the horizon.
+  // A disk that faces the element, which is then on its axis up to rounding; the horizon cuts it.
   const glm::dvec3 toward = glm::normalize(glm::dvec3(1, 2, 0.1));
   const FormFactorDisk facing{2.0 * toward, -toward, 0.8};
   EXPECT_NEAR(form_factor(facing, kUp), polygonal(facing, kUp, 20000), 1e-8);
   EXPECT_GT(form_factor(facing, kUp), 0.01);
-  // Upright with its centre in the horizon plane: the upper half.
+  // An upright disk with its centre on the horizon plane: the upper half counts.
   EXPECT_EQ(form_factor(FormFactorDisk{{2, 0, -0.6}, {-1, 0, 0}, 0.5}, kUp), 0);
   EXPECT_NEAR(form_factor(FormFactorDisk{{2, 0, 0}, {-1, 0, 0}, 0.5}, kUp),
               polygonal({{2, 0, 0}, {-1, 0, 0}, 0.5}, kUp, 20000), 1e-8);
@@ -234,12 +235,12 @@ TEST(FormFactor, OfAnEllipseIsThatOfItsPolygon) {
     const double h = std::abs(glm::dot(glm::normalize(across), ellipse.center));
     if (h < 0.05) continue;
     cut += std::abs(glm::dot(n, ellipse.center)) < std::hypot(glm::dot(n, ellipse.u), glm::dot(n, ellipse.v)) ? 1 : 0;
-    const double step = 2 * pi / kSides, reach = std::sqrt(step / std::sin(step));  // of equal area
+    const double step = 2 * pi / kSides, reach = std::sqrt(step / std::sin(step));  // for equal area
     std::vector<glm::dvec3> corners;
     for (int i = 0; i < kSides; ++i)
       corners.push_back(ellipse.center + reach * (std::cos(i * step) * ellipse.u + std::sin(i * step) * ellipse.v));
-    // The bound is that of a disk whose radius no ellipse's axis reaches; every corner's share may be off by an ulp of
-    // its edge.
+    // The bound is that of a disk whose radius exceeds both axes of the ellipse; each corner's share may be off by an
+    // ulp of its edge.
     const double size = std::hypot(glm::length(ellipse.u), glm::length(ellipse.v));
     const double stray = size * std::pow(pi / kSides, 2) / 2 * (2 * pi * size) / (pi * h * h);
     EXPECT_NEAR(form_factor(ellipse, n), std::abs(form_factor(corners, n)), stray + 1e-13)
@@ -253,14 +254,14 @@ TEST(FormFactor, OfARoundEllipseIsTheDisks) {
     const glm::dvec3 center = distance * glm::normalize(glm::dvec3(0.3, 0.2, 1)), normal(0, 0.6, -0.8);
     const glm::dvec3 n = glm::normalize(glm::dvec3(0.1, 0.5, 1)), u(0.5, 0, 0), v(0, 0.4, 0.3);
     const double disk = form_factor(FormFactorDisk{center, normal, 0.5}, n);
-    // Tolerance: in ε of the cone's axes, and ε d / a of the disk's own (form_factor.hpp).
+    // The tolerance counts ε of the cone's axes and ε d / a of the disk's own (see form_factor.hpp).
     EXPECT_NEAR(form_factor(FormFactorEllipse{center, u, v}, n) / disk, 1, 64 * kUlp * (1 + distance)) << distance;
     EXPECT_NEAR(form_factor(FormFactorEllipse{center, v, -u}, n) / disk, 1, 64 * kUlp * (1 + distance)) << distance;
   }
 }
 
 TEST(FormFactor, OfADiskHasNoSeams) {
-  // Both sides agree where formulas change (horizon just touching; B/A = 1/64; ρ² = R² + h²).
+  // Neighbouring formulas agree where they meet (horizon just touching; B/A = 1/64; ρ² = R² + h²).
   const auto value = [](double rho, double h, double tilt) {
     return form_factor(FormFactorDisk{{-rho, 0, h}, {0, 0, -1}, 1}, {std::sin(tilt), 0, std::cos(tilt)});
   };
@@ -272,7 +273,7 @@ TEST(FormFactor, OfADiskHasNoSeams) {
   for (const double h : {0.5, 2.0}) {
     for (const double rho : {0.3, 1.0, 1.5}) {
       expect_same(rho, h, std::atan2(h, 1 + rho));               // the far side of the rim touches the horizon
-      expect_same(std::sqrt(1 + h * h), h, 0.25 * rho);          // upper's two forms
+      expect_same(std::sqrt(1 + h * h), h, 0.25 * rho);          // where `upper` changes its form
       expect_same((1 + h * h) / 128 * 1.0000610370189, h, 1.4);  // near B/A = 1/64, cut by the horizon
     }
   }

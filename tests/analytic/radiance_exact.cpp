@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `exact`'s form factors: closed forms, brute force, additivity. Lights near the floor make cosines and distances
-// differ over the light as much as they can.
+// Tests form factors of `exact` against closed forms and brute force, and by additivity. Lights near the floor make
+// cosines and distances vary over the light as much as they can.
 
 #include "reference/methods.hpp"
 #include "tests/unit/exact_area_scenes.hpp"
@@ -25,8 +25,8 @@ using tests::AreaStage;
 using tests::random_dyadic;
 using visibility::UnshadowedLight;
 
-/// Sums of a thousand trapezoids of four terms up to 1/4, each off by an ulp or two of that, and ends of edges that
-/// moved by an ulp.
+/// The form factors are sums of a thousand trapezoids with four terms up to 1/4, each off by an ulp or two of that, and
+/// with ends of edges that moved by an ulp.
 constexpr double kRounding = 1e-12;
 constexpr glm::vec3 kUp(0, 1, 0);
 
@@ -73,7 +73,7 @@ TEST(ExactRadiance, UnderAParallelSquareTheHiddenPartIsARectangle) {
   }
 }
 
-/// A light near the floor, nearly upright; below y = 0 the horizon cuts it off.
+/// A light near the floor, nearly upright; if its bottom is below y = 0, the horizon cuts it.
 scenes::AreaLight panel(double bottom) {
   return tests::rectangle_light({0, bottom + 0.75, -1}, {1, 0, 0.25}, {0, 0.75, 0.125});
 }
@@ -88,7 +88,7 @@ std::vector<tests::Corners> random_triangles(std::mt19937& random, int count) {
   return triangles;
 }
 
-/// Returns whether the open segment from p to l meets the triangle, in double: only for points that are not on an edge.
+/// Returns whether the open segment from p to l meets the triangle, in double. It must not meet the triangle's edges.
 bool blocked(const glm::dvec3& p, const glm::dvec3& l, const tests::Corners& t) {
   const glm::dvec3 d = l - p, e = t[1] - t[0], f = t[2] - t[0], h = glm::cross(d, f);
   const double under = glm::dot(e, h);
@@ -100,10 +100,10 @@ bool blocked(const glm::dvec3& p, const glm::dvec3& l, const tests::Corners& t) 
 
 struct Brute {
   double form_factor = 0;
-  double doubtful = 0;  ///< the part of cells whose neighbours are not all like them: what the boundary may have cost
+  double doubtful = 0;  ///< the part in cells that differ from a neighbour, which bounds the boundary's error
 };
 
-/// size × size cells, each visible if its middle is.
+/// Sums over size × size cells, each visible if its middle is.
 Brute brute_force(const AreaStage& stage, const std::vector<tests::Corners>& triangles, const glm::vec3& p, int size) {
   const glm::dvec3 c(stage.light.center), u = glm::dvec3(stage.light.center_u) - c,
                                           v = glm::dvec3(stage.light.center_v) - c;
@@ -147,16 +147,17 @@ TEST(ExactRadiance, IsWhatBruteForceComesTo) {
     if (exact.visibility == 0 || exact.form_factor.x == UnshadowedLight(stage.light, p, kUp).whole()) continue;
     ++part;
     const Brute coarse = brute_force(stage, triangles, p, 32), fine = brute_force(stage, triangles, p, 256);
-    // A cell that the boundary crosses is off by at most all of it. Either it differs from a neighbour, or the boundary
-    // leaves it again before its middle: half of the doubtful cells' sum is a generous bound for both together.
+    // A cell that the boundary crosses is off by at most its whole value. It either differs from a neighbour, or the
+    // boundary leaves it before reaching its middle: half of the doubtful cells' sum is a generous bound for both cases
+    // together.
     EXPECT_NEAR(fine.form_factor, exact.form_factor.x, 0.5 * fine.doubtful + 1e-9) << "seed " << kSeed << " " << round;
     coarse_error += std::abs(coarse.form_factor - exact.form_factor.x);
     fine_error += std::abs(fine.form_factor - exact.form_factor.x);
     v_error += std::abs(exact.visibility * UnshadowedLight(stage.light, p, kUp).whole() - exact.form_factor.x);
   }
   EXPECT_GE(part, 5);
-  EXPECT_LT(fine_error, coarse_error / 4);  // cells are 8 times smaller; 65,536 samples
-  EXPECT_LT(fine_error, v_error / 20);      // V times the unshadowed integral is something else
+  EXPECT_LT(fine_error, coarse_error / 4);  // the fine grid has cells of an eighth of the width, 65,536 samples
+  EXPECT_LT(fine_error, v_error / 20);      // V times the unshadowed integral is a different quantity
 }
 
 TEST(ExactRadiance, QuartersOfALightAddUp) {
@@ -214,7 +215,8 @@ TEST(ExactRadiance, ATextureIsTheSumOfItsTexelsLights) {
 }
 
 TEST(ExactRadiance, MoreTexelsThanBlocksAreTheirMeans) {
-  // 130 columns: blocks of three, the last of one. A texture that is constant in each block is the same either way.
+  // 130 columns make blocks of three, and a last one of one. A texture that is constant in each block gives the same
+  // form factor for both.
   constexpr unsigned kSeed = 10;
   std::mt19937 random(kSeed);
   const auto level = [](std::uint32_t block) { return static_cast<float>(block * 7 % 5) + 1; };
@@ -237,13 +239,13 @@ TEST(ExactRadiance, MoreTexelsThanBlocksAreTheirMeans) {
         sum += view(AreaStage(with_light(scene, block)), p).form_factor * glm::dvec3(level(x), half > 0 ? 2 : 0, 1);
       }
     }
-    // The blocks as lights are rounded to float32, which moves their borders by 1e-7.
+    // The lights that stand for blocks are rounded to float32, which moves their borders by 1e-7.
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(result[c], sum[c], 5e-6) << "seed " << kSeed << ", round " << round;
   }
 }
 
-/// Parts of a round light that share sides add up to all of it, however near p is to the rim and wherever the horizon
-/// is.
+/// Parts of a round light that share sides add up to the whole light, however near p is to the rim and wherever the
+/// horizon is.
 TEST(ExactRadiance, PartsOfRoundLightsAddUp) {
   std::mt19937 random(5);
   double largest = 0;
@@ -269,8 +271,8 @@ TEST(ExactRadiance, PartsOfRoundLightsAddUp) {
 }
 
 TEST(ExactRadiance, HalfADiskAndHalfASphere) {
-  // A board hides x < 0 as seen from under the centre. The disk's stored axes are exact here, the sphere's
-  // are double: half the rim is an arc, by quadrature, and the other half's chord passes under p.
+  // Seen from under the centre, a board hides x < 0. The disk's stored axes are exact here, the sphere's are doubles.
+  // Half of the rim is an arc, integrated by quadrature; the chord of the other half passes under p.
   for (const bool sphere : {false, true}) {
     scenes::AreaLight light;
     light.name = "round";
@@ -281,14 +283,14 @@ TEST(ExactRadiance, HalfADiskAndHalfASphere) {
     }
     const AreaStage stage(with_light(area_scene(tests::quad({-1, 0.25, 0}, {1, 0, 0}, {0, 0, -1})), light));
     const double whole = UnshadowedLight(stage.light, {0, 0, 0}, kUp).whole();
-    EXPECT_NEAR(whole, sphere ? 0.5625 : 0.5625 / 1.5625, 1e-15);  // a sphere's: r² / d²
+    EXPECT_NEAR(whole, sphere ? 0.5625 : 0.5625 / 1.5625, 1e-15);  // for a sphere: r² / d²
     EXPECT_NEAR(view(stage, {0, 0, 0}).form_factor.x, whole / 2, 1e-14);
     const AreaStage bare(with_light(area_scene({}), light));
     EXPECT_EQ(view(bare, {8, 0, 0}).form_factor.x, UnshadowedLight(bare.light, {8, 0, 0}, kUp).whole());
   }
 }
 
-/// Makes a board before the panel.
+/// Makes a board in front of the panel.
 scenes::Scene boards_before_a_panel() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}));

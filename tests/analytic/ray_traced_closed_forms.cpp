@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ray caster against shadows that can be written down: which light samples are hidden (exactly, except for pairs
-// within rounding of the projected edge, which are counted), and how fast the share approaches the area.
+// Tests the ray caster against shadows in closed form: which light samples are hidden (exactly, except for pairs within
+// rounding of the projected edge, which are counted), and how fast the share approaches the area.
 
 #include "tests/analytic/board_over_floor.hpp"
 #include "tests/unit/ray_traced_masks.hpp"
@@ -22,7 +22,7 @@ using visibility::SamplePattern;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// Embree's edge tests are float32 on coordinates up to `extent`: eight of its ulps is what they may be off.
+/// Embree's edge tests are in float32 on coordinates up to `extent`: they may be off by eight of its ulps.
 tests::BoardPairs compare(const Stage& stage, double extent) {
   return tests::compare_with_board(stage, tests::trace(stage), 8 * extent * 0x1p-23);
 }
@@ -35,7 +35,7 @@ TEST(ClosedForm, ParallelSquareHidesExactlyItsProjection) {
 }
 
 TEST(ClosedForm, HalfPlaneHidesExactlyItsProjection) {
-  // Far enough to the left, front and back that only its right edge is on the light.
+  // The board reaches so far to the left, front and back that only its right edge appears on the light.
   const Stage stage(tests::board_scene({-64, -64}, {0.25, 64}), 96, 96, {256, 0, 0, SamplePattern::sobol, 0});
   expect_board(compare(stage, 64), 100000, 1e-3);
 }
@@ -84,7 +84,7 @@ TEST(ClosedForm, ASphereHidesTheDiskOfItsTangentCone) {
 }
 
 TEST(ClosedForm, HalfOfASphereLightBehindAWall) {
-  // The wall's edge is in the plane through p and the light's centre: it hides half of the disk that p sees.
+  // The wall's edge lies in the plane through p and the light's centre: it hides half of the disk that p sees.
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   tests::add_object(scene, "wall", tests::quad({2, 1, 0}, {2, 0, 0}, {0, 0, -3}));
@@ -97,8 +97,8 @@ TEST(ClosedForm, HalfOfASphereLightBehindAWall) {
 }
 
 TEST(ClosedForm, ASphereLightBehindAHalfPlaneLosesASegmentOfItsDisk) {
-  // The tangents from p at distance d meet the disk, of radius ρ = r √(1 − r²/d²), at the height (d² − r²) / d. A
-  // board's edge at half of that height and x = c appears at 2 c on it.
+  // The tangents from p at distance d touch the sphere at a disk of radius ρ = r √(1 − r²/d²), at height (d² − r²) / d.
+  // A board's edge at half of that height and x = c appears at 2 c on the disk.
   const double r = 0.75, d = 3, height = (d * d - r * r) / d, rho = r * std::sqrt(1 - r * r / (d * d));
   for (const double share : {-0.75, -0.25, 0.0, 0.5}) {
     scenes::Scene scene;
@@ -115,7 +115,8 @@ TEST(ClosedForm, ASphereLightBehindAHalfPlaneLosesASegmentOfItsDisk) {
 }
 
 TEST(ClosedForm, ASphereLightBehindABallLosesTheBallsCone) {
-  // Ball and light on one axis: the ball's cone over the light's, in the plane of the light's disk.
+  // Ball and light are on one axis: the hidden share follows from the ball's cone over the light's cone, in the plane
+  // of the light's disk.
   const double r = 0.75, d = 4, tangent = r / std::sqrt(d * d - r * r);
   for (const double radius : {0.1, 0.2, 0.3}) {
     scenes::Scene scene;
@@ -142,9 +143,9 @@ TEST(ClosedForm, InsideASphereLightNothingIsVisible) {
 }
 
 TEST(ClosedForm, ASunsPenumbraIsAsWideAsDistanceTimesTangent) {
-  // Straight above, a board's edge at the height h over x = 0 and beyond: from x the board appears from (−x / h) on,
-  // and the sun's disk has the radius tan(angle / 2). A tilted sun moves the shadow, and its frame's plane is not the
-  // board's.
+  // A sun straight above, and a board at height h whose edge is at x = 0: from x the board appears from (−x / h) on,
+  // and the sun's disk has the radius tan(angle / 2). The sun is straight above because a tilted sun would move the
+  // shadow, and the plane of its frame would not be the board's.
   constexpr double kHeight = 2;
   for (const double angle : {0.53, 10.0, 60.0}) {
     const double tangent = std::tan(angle * std::numbers::pi / 360);
@@ -160,7 +161,7 @@ TEST(ClosedForm, ASunsPenumbraIsAsWideAsDistanceTimesTangent) {
       const Masks masks = tests::trace(floats, light, one_sample(floats, {-3, 0.5, 0}, at));
       const double s = std::clamp(share, -1.0, 1.0);
       const double hidden = (std::acos(s) - s * std::sqrt(1 - s * s)) / std::numbers::pi;
-      // A few samples in 4096 are left at ±0.99: hidden is not 0 or 1.
+      // At ±0.99 a few samples of 4096 are left: the hidden share is neither 0 nor 1.
       EXPECT_NEAR(masks.visibility[0], 1 - hidden, 0.003) << angle << " at " << share;
       if (std::abs(share) > 1) {
         EXPECT_EQ(masks.visibility[0], share > 0 ? 1 : 0) << angle << " at " << share;
@@ -186,7 +187,7 @@ TEST(ClosedForm, ASunOfAngleZeroCastsHardShadows) {
 }
 
 TEST(ClosedForm, TheHorizonCutsASun) {
-  // The floor sees the upper half of a disk at the elevation 0.
+  // The sun's centre is on the horizon: the floor sees its upper half.
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   scene.lights.emplace_back();

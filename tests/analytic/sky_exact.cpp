@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes with a picture, as areas: against closed forms, against the dome of one radiance, against a million directions,
-// and the integrals of a sky against one another.
+// Tests areas of domes with a picture: against closed forms, against the dome of one radiance, against a million
+// directions, and the integrals of a sky against one another.
 
 #include "tests/unit/dome_stage.hpp"
 #include "tests/unit/visibility/soups.hpp"
@@ -58,7 +58,7 @@ scenes::Scene floor_scene(const scenes::Dome& dome, scenes::Texture sky) {
   return scene;
 }
 
-/// V of the methods of areas at floor pixels.
+/// Checks V of the area methods at floor pixels.
 void expect_shares(const scenes::Scene& scene, const std::function<double(const glm::dvec3&)>& expected, double off) {
   const Stage stage(scene, 16, 16, {});
   for (const auto& [name, method] : dome_area_methods()) {
@@ -75,14 +75,15 @@ void expect_shares(const scenes::Scene& scene, const std::function<double(const 
   }
 }
 
-/// A rectangle that stands on the element's plane, from its foot `a` to one side and `b` up, `c` away (J. Howell,
-/// C-12).
+/// The form factor of a rectangle that stands on the element's plane at distance `c`: from its foot it extends `a` to
+/// one side and `b` up (J. Howell, C-12).
 double wall_factor(double a, double b, double c) {
   const double far = std::hypot(b, c);
   return (std::atan(a / c) - c / far * std::atan(a / far)) / (2 * pi);
 }
 
-/// A wall across the middle of a picture of two texels: each half hides the form factor of its own rectangle.
+/// A wall across the border between the two texels of a picture: on each half of the sky it hides the form factor of
+/// its own rectangle.
 TEST(SkyExact, AStepIsHiddenByItsHalvesOfAWall) {
   constexpr double kLeft = 1, kRight = 5, kHeight = 1.5, kAt = -1.25, kLong = 3;
   for (const bool half : {false, true}) {
@@ -101,10 +102,11 @@ TEST(SkyExact, AStepIsHiddenByItsHalvesOfAWall) {
   }
 }
 
-/// A high wall from the azimuth of its edge on hides that part of a texel; V is the rest of the texel's azimuths.
+/// A high wall that begins at its edge's azimuth hides that part of a texel; V is the rest of the texel's range of
+/// azimuths.
 TEST(SkyExact, ATexelIsHiddenByItsAzimuths) {
   constexpr double kFirst = 0.25 * pi, kLast = 0.5 * pi;  // right of −Z: texel 5 of 8
-  const double edge = 1.5, far = 2;                       // the wall is at z = −far, from x = edge on
+  const double edge = 1.5, far = 2;                       // the wall is at z = −far, x ≥ edge
   scenes::Scene scene = floor_scene(
       {}, picture(8, 4, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(x == 5 && y == 1 ? 3.0F : 0.0F); }));
   constexpr double kLong = 1 << 20;
@@ -115,10 +117,10 @@ TEST(SkyExact, ATexelIsHiddenByItsAzimuths) {
         const double azimuth = std::atan2(edge - p.x, far + p.z);
         return (std::clamp(azimuth, kFirst, kLast) - kFirst) / (kLast - kFirst);
       },
-      2e-5);  // the wall ends 2^-20 before the azimuth of +X, and near the zenith
+      2e-5);  // the wall ends 2^-20 before the azimuth of +X, and just below the zenith
 }
 
-/// A sky that lights only undersides gives V = 0 on a floor, as with light samples.
+/// A sky whose light comes only from below the floor gives V = 0 there, as with light samples.
 TEST(SkyExact, WhatIsBlackAboveTheFloorGivesNothing) {
   expect_shares(
       floor_scene({}, picture(8, 4, [](std::uint32_t, std::uint32_t y) { return glm::vec3(y < 2 ? 0 : 1); })),
@@ -174,7 +176,7 @@ bool meets(const glm::dvec3& p, const glm::dvec3& d, const std::array<glm::vec3,
 
 /// Sums over a million directions, one in each cell of a grid that divides the texels evenly. The error of a cell in
 /// which visibility changes is at most its weight, and these errors are independent: four times the root of the sum of
-/// their squares is never reached.
+/// their squares is never reached in practice.
 TEST_P(SkyAreas, AreThoseOfAMillionDirections) {
   constexpr std::uint32_t kColumns = 9, kRows = 5, kAcross = 1008, kDown = 1000;
   std::mt19937 random(GetParam() + 100);
@@ -220,7 +222,7 @@ TEST_P(SkyAreas, AreThoseOfAMillionDirections) {
         form_factor += weight * color;
       }
     }
-    const double off = 4 * std::sqrt(squares) + 1e-5 * whole;  // and the cosine's change in a cell
+    const double off = 4 * std::sqrt(squares) + 1e-5 * whole;  // the last term: the cosine changes within a cell
     EXPECT_LT(off, 0.01 * whole);
     EXPECT_NEAR(v, seen / whole, off / whole) << i;
     EXPECT_NEAR(luminance_of(rows.form_factors[i]), luminance_of(form_factor), off) << i;
@@ -243,8 +245,8 @@ double largest_difference(const SkyFlux& a, const SkyFlux& b) {
   return largest;
 }
 
-/// The parts of the sky above and below a plane add up to the faces; a plane cuts each face in two; and sides on a
-/// face's border, from tables, equal sides just inside, which go from texel to texel.
+/// The sky's parts above and below a plane add up to the faces, and a plane cuts each face in two. Sides on a face's
+/// border, which come from tables, equal sides just inside, which are summed from texel to texel.
 TEST(SkySums, FacesHalvesAndBordersAgree) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `exact` under textures: against the areas of many small lights, one for each texel, and against what can be written
-// down. The tolerance is exact_area_closed_forms.cpp's; integrals of a piecewise constant texture are lengths of the
+// Tests `exact` with textures: against the areas of many small lights, one for each texel, and against closed forms.
+// The tolerance is that of exact_area_closed_forms.cpp; integrals of a piecewise constant texture are lengths of the
 // same edges times sums of at most 2048 luminances in double, whose rounding is far below it.
 
 #include "tests/unit/exact_area_scenes.hpp"
@@ -21,7 +21,8 @@ using tests::texture_of;
 
 constexpr double kRounding = 1e-12;
 
-/// Lights of the tests: overhead, and upright behind the floor's horizon, which cuts it at a third of its height.
+/// Lights of the tests: one overhead, and one that stands upright and is cut by the floor's horizon at a third of its
+/// height.
 scenes::AreaLight overhead() {
   return tests::ceiling_light(4, 1);
 }
@@ -104,12 +105,13 @@ TEST(TexturedLightExact, AConstantTextureIsNone) {
 }
 
 TEST(TexturedLightExact, AnEdgeAcrossAGradientLeavesItsIntegral) {
-  // A wall whose upper edge, level with p's, hides what lies under t = e on the light; the texture's rows grow by one
-  // from the bottom: 1, 2 … n. What is left over is ∫ of a staircase.
+  // A wall whose upper edge, parallel to the light's rows, hides everything below t = e on the light. The luminance of
+  // the texture's rows grows by one from the bottom: 1, 2 … n. V is the rest of the integral of this staircase.
   constexpr std::uint32_t kRows = 7;
   const auto staircase =
       texture_of(3, kRows, [](std::uint32_t, std::uint32_t y) { return glm::vec3(static_cast<float>(kRows - y)); });
-  // Light upright at z = −4, t = (y − 2) / 1; wall at z = −2, half way from p at z = 0: it hides y < 2 (h − p.y) + p.y.
+  // The light stands upright at z = −4, t = (y − 2) / 1; the wall, at z = −2, is half way from p at z = 0: it hides y <
+  // 2 (h − p.y) + p.y.
   for (const double h : {0.5, 0.75, 1.0, 1.234375, 1.5}) {
     scenes::Scene scene = area_scene(tests::quad({0, h - 2, -2}, {8, 0, 0}, {0, 2, 0}));
     scene.lights.push_back(tests::rectangle_light({0, 2, -4}, {1, 0, 0}, {0, 1, 0}));

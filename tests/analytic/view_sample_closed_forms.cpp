@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// View-sample mapping against shadows that can be written down: exactly the samples that the closed form hides, except
-// pairs within the closed form's own rounding of the projected edge, which are counted; and convergence to the area.
+// Tests view-sample mapping against shadows in closed form: it must hide exactly the samples that the closed form
+// hides, except pairs within the closed form's own rounding of the projected edge, which are counted; and it must
+// converge to the area.
 
 #include "tests/agreement/support.hpp"
 #include "tests/analytic/board_over_floor.hpp"
@@ -20,8 +21,8 @@ class ClosedForm : public tests::DeviceTest {
   static Masks masks_of(const Stage& stage) {
     return tests::map_view_samples(device(), stage.floats, stage.light, stage.samples);
   }
-  /// No bit may be wrong. Of the closed form in double a crossing point is off by a few ulps of coordinates up to
-  /// `extent`, and the one tolerance here allows for that.
+  /// No bit may be wrong. In double, the closed form's crossing point is off by a few ulps of coordinates up to
+  /// `extent`; the tolerance allows for nothing else.
   static tests::BoardPairs compare(const Stage& stage, double extent) {
     return tests::compare_with_board(stage, masks_of(stage), 16 * 0x1p-53 * extent);
   }
@@ -48,8 +49,8 @@ TEST_F(ClosedForm, TheShareConvergesToTheProjectedArea) {
 }
 
 TEST_F(ClosedForm, AHalfPlaneHidesASegmentOfADisk) {
-  // The board's edge, seen from p, is a line at distance d from the disk's centre: a segment of
-  // (acos d − d √(1 − d²)) / π of the unit disk remains on its far side.
+  // Seen from p, the board's edge is a line at distance d from the disk's centre: a segment of (acos d − d √(1 − d²)) /
+  // π of the unit disk remains visible beyond it.
   scenes::Scene scene = tests::board_scene({-64, -64}, {0.25, 64});
   scene.lights[0].shape = scenes::Disk{{0, tests::kBoardLightHeight, 0}, {0, -1, 0}, 1};
   const Stage stage(scene, 48, 48, {4096, 0, 0, SamplePattern::sobol, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wedges as meshes for viewing, and what a plane cuts out of them: against closed forms.
+// Tests wedges as meshes for viewing, and their sections by a plane, against closed forms.
 #include "volumes/wedges/wedge_body.hpp"
 
 #include <glm/geometric.hpp>

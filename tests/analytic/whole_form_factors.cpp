@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Form factors of whole lights, and of their parts, side by side against one at a time: the same bits on every vector
-// width, whatever is near an edge, a plane or the horizon. And the arc tangent of both against the x87's.
+// Tests that form factors of whole lights, and of their parts, are the same bits computed side by side and one at a
+// time, on every vector width, even near an edge, a plane or the horizon. Also compares the arc tangent of both with
+// the x87's.
 #include "tests/unit/visibility/scenes.hpp"
 #include "visibility/light_samples.hpp"
 #include "visibility/lights/angle_over_sine.hpp"
@@ -24,7 +25,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Elements on a lattice that the lights' corners, planes and axes share, and elements anywhere.
+/// Elements on a lattice that contains the lights' corners, planes and axes, and elements anywhere.
 struct Surroundings {
   std::vector<glm::vec3> p, n;
   std::vector<std::uint32_t> which;
@@ -107,7 +108,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, WholeFormFactors,
                            return name;
                          });
 
-/// Makes parts on the lattice of rows=exact, between two heights; now and then without a side, or without area.
+/// Makes parts on the lattice of rows=exact, between two heights; some have a side of length 0, or no area.
 FourCorneredParts parts_on_lattice(std::mt19937& random, std::size_t count) {
   std::uniform_real_distribution<double> anywhere(-1, 1);
   FourCorneredParts parts;
@@ -159,8 +160,8 @@ TEST_P(PartFormFactors, AreThoseOfOnePartToTheLastBitOnEveryWidth) {
 INSTANTIATE_TEST_SUITE_P(Kinds, PartFormFactors, testing::Values("rectangle", "polygon"));
 
 TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
-  // Twenty bits a coordinate: a plane's point is the sum of its axes, exactly, and what double makes of the determinant
-  // is not.
+  // With twenty bits per coordinate a point in the light's plane is the exact sum of its axes, but the determinant in
+  // double is not exact.
   constexpr unsigned kSeed = 9;
   std::mt19937 random(kSeed);
   const auto vector = [&] {
@@ -174,7 +175,7 @@ TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
     scenes::Scene scene;
     scene.lights.push_back(source);
     const Light light = make_light(scene, 0, glm::dvec3(0), {1});
-    // Points beside the light, on the side from which their normals turn to it.
+    // Points beside the light in its plane; their normals lean toward its emitting side.
     const std::vector<glm::vec3> p{glm::vec3(2.0 * u), glm::vec3(2.0 * u + v), glm::vec3(u + 2.0 * v),
                                    glm::vec3(-2.0 * v)};
     std::vector<glm::vec3> n;
@@ -189,10 +190,11 @@ TEST(WholeFormFactor, InTheLightsPlaneThereIsNoLight) {
 
 TEST(AngleOverSine, IsTheArcTangentToAFewRoundings) {
   if (std::numeric_limits<long double>::digits < 64) GTEST_SKIP() << "long double is no longer than double";
-  // Errors in ε = 2⁻⁵³. Short edges: q is off by 2, of which the series feels a twentieth; its coefficients leave 0.04,
-  // its last sums 1.7; the division adds 1: 3. Others: the length is off by 1; so the ratio by 0.5 + 3 · 0.41 and the
-  // arc by 2.8 absolutely beside a base off by 0.3 and a sum by 1 at most, of an angle of π/8 or more, 8.5 relatively
-  // at its least; the length and the division add 2: 11. (Beyond, angles are larger and errors are not.)
+  // Errors in ε = 2⁻⁵³. Short edges: q is off by 2, of which the series feels a twentieth; its coefficients add 0.04,
+  // its last sums 1.7, the division 1: 3 in all. Other edges: the length is off by 1; so the ratio is off by 0.5 + 3 ·
+  // 0.41, and the arc by 2.8 absolutely, plus a base off by 0.3 and a sum off by at most 1. Of an angle of at least π/8
+  // that is a relative error of 8.5; the length and the division add 2: 11 in all. (Larger angles have no larger
+  // errors.)
   constexpr long double kEpsilon = 0x1p-53L;
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> turn(0, 3.14159), scale(-40, 40);
@@ -211,7 +213,7 @@ TEST(AngleOverSine, IsTheArcTangentToAFewRoundings) {
   EXPECT_LE(worst, 11);
   EXPECT_GT(worst_short, 0);
   for (const double q : {0.0, 0x1p-60, 0.01, 0.1, kArcSeriesEnd}) {
-    // The polynomial's own error, in long double and without the roundings of doubles: 2^−57.8.
+    // The polynomial's own error, in long double and so without the rounding of doubles, is 2^−57.8.
     long double sum = 0;
     for (std::size_t k = kArcSeries.size(); k-- > 0;) sum = sum * q + kArcSeries[k];
     const long double root = sqrtl(q), exact = q == 0 ? 1 : atanl(root) / root;

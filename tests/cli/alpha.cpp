@@ -22,12 +22,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// A floor of 8 × 8 at y = 0 that a plane of 2 × 2 at y = 5 lights, seen from above through a camera that is beside
-/// the card or pane "Card" of 4 × 4 at y = 2.
+/// A floor of 8 × 8 at y = 0 under a light of 2 × 2 at y = 5, with the card or pane "Card" of 4 × 4 at y = 2 between
+/// them. The camera looks down, from under the card unless a test moves it.
 class AlphaSurfaces : public ProgramTest {
  protected:
   AlphaSurfaces() {
-    gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // its front down
+    gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // faces down
     gltf.at("/meshes").push_back(
         {{"primitives", {{{"attributes", {{"POSITION", 2}}}, {"indices", 3}, {"material", 0}}}}});
     gltf.at("/meshes").push_back(
@@ -42,7 +42,7 @@ class AlphaSurfaces : public ProgramTest {
     gltf.at("/materials").push_back({{"name", "Leaf"}, {"pbrMetallicRoughness", {{"metallicFactor", 0}}}});
     look_from_under_the_card();
   }
-  /// Straight down from between floor and card, so that the picture is the floor beneath it.
+  /// Looks straight down from between floor and card, so that the picture shows the floor beneath the card.
   void look_from_under_the_card() {
     gltf.at("/nodes/2") = {
         {"name", "Camera"}, {"camera", 0}, {"translation", {0, 1.5, 0}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}};
@@ -52,7 +52,7 @@ class AlphaSurfaces : public ProgramTest {
     gltf.at("/materials/2")["alphaMode"] = "BLEND";
     gltf.at("/materials/2/pbrMetallicRoughness")["baseColorFactor"] = {0.25, 0.25, 0.25, alpha};
   }
-  /// Opaque where x > 0.
+  /// Makes the card opaque only where x > 0.
   void half_a_card() {
     const auto png = png_file(2, 1, 8, 6, {tests::bytes_of({255, 255, 255, 0, 255, 255, 255, 255})});
     gltf.document["images"] = {{{"mimeType", "image/png"}, {"bufferView", gltf.add_view(png)}}};
@@ -91,8 +91,8 @@ TEST_F(AlphaSurfaces, PanesDimLightAndShadow) {
   EXPECT_EQ(stats.at("counters").at("maskPairs"), 0);
 }
 
-/// Pixels are exact wherever the pane is certainly not in between: there a picture is the one without it, bit by bit.
-/// Elsewhere it is the one of light samples.
+/// Pixels are exact wherever the pane is certainly not between floor and light: there the picture equals the one
+/// without the pane, bit by bit. Elsewhere it equals the one from light samples.
 TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
   const json away = {0, 1, 2}, there = {0, 1, 2, 3};
   gltf.at("/nodes/3") = {{"name", "Card"}, {"mesh", 3}, {"translation", {1.5, 2, 0}}, {"scale", {1, 1, 2}}};
@@ -117,8 +117,8 @@ TEST_F(AlphaSurfaces, AreasStayExactBesideWhatAPaneMayDim) {
       const ExrFile seen = picture(), open = picture("open.exr"), counted = picture("counted.exr");
       std::size_t pixels_counted = 0;
       for (std::size_t i = 0; i < seen.floats.at("V").size(); ++i) {
-        // Segments from x to the light's x in [-1, 1] are at the pane's height in 0.6 x + [-0.4, 0.4]; the pane begins
-        // at 0.5. Four view samples are a pixel's quarters.
+        // Segments from x to the light's x in [-1, 1] cross the pane's height at 0.6 x + [-0.4, 0.4]; the pane begins
+        // at 0.5. Four view samples cover a pixel's quarters.
         const float border = (0.5f - 0.4f) / 0.6f, pixel = seen.floats.at("P.X")[1] - seen.floats.at("P.X")[0];
         const float beside = (seen.floats.at("P.X")[i] - border) / pixel;
         if (std::abs(beside) < 0.5f && !more.empty()) continue;
@@ -158,10 +158,10 @@ TEST_F(AlphaSurfaces, LightsOfWhichTheSameIsSaidShareALine) {
     })) << light;
 }
 
-/// Panes behind the light, below the floor, far beside it, or that cast nothing are not counted.
+/// Panes behind the light, below the floor, far beside it, or without a shadow change nothing: areas stay exact.
 TEST_F(AlphaSurfaces, APaneThatDimsNothingLeavesAreas) {
   translucent(0.3);
-  // A mesh that is seen and hides nothing keeps the scene's origin where it is.
+  // These meshes hide nothing; they keep the scene's origin where it is.
   gltf.at("/nodes").push_back({{"name", "Far"}, {"mesh", 2}, {"translation", {0, 7, 0}}});
   gltf.at("/nodes").push_back({{"name", "Deep"}, {"mesh", 2}, {"translation", {0, -3, 0}}});
   gltf.at("/scenes/0/nodes") = {0, 1, 2, 4, 5};
@@ -193,8 +193,8 @@ TEST_F(AlphaSurfaces, APaneThatDimsNothingLeavesAreas) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
 }
 
-/// A pane seen from above is composited over what it dims: α its own light + (1 − α) the floor's; all else is of the
-/// floor.
+/// A pane seen from above is composited over what it dims: α times its own light + (1 − α) times the floor's. All other
+/// channels are the floor's.
 TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
   look_from_above();
   gltf.at("/scenes/0/nodes") = {1, 2, 3};
@@ -224,23 +224,23 @@ TEST_F(AlphaSurfaces, PanesAreCompositedAndCarryNothingElse) {
   EXPECT_EQ(json::parse(read("stats.json")).at("counters").at("viewSamplesCounted"), 33 * 21) << "of the floor";
 }
 
-/// A light with only a pane in front of it lights something in the picture.
+/// A light that shines only on a pane lights something in the picture.
 TEST_F(AlphaSurfaces, PanesAreLitToo) {
   look_from_above();
   translucent(0.4);
   gltf.at("/nodes").push_back({{"name", "Low"}, {"mesh", 1}, {"translation", {0, 0.5, 0}}, {"rotation", {0, 0, 0, 1}}});
-  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};  // over the floor, shining up at the pane alone
+  gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};  // over the floor, shining up at the pane only
   gltf.at("/nodes/4")["extras"] = {{"body", false}};
   gltf.at("/materials/1")["doubleSided"] = false;
   const Outcome outcome = render({"--light-samples", "16"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, Not(HasSubstr("no visible point")));
   translucent(1);
-  gltf.at("/nodes/3/translation") = {0, 0.25, 0};  // below it
+  gltf.at("/nodes/3/translation") = {0, 0.25, 0};  // below the light "Low"
   EXPECT_THAT(render({"--light-samples", "16"}).err, HasSubstr("no visible point is before light \"Low\""));
 }
 
-/// Exposure leaves out what shines itself, translucent or not.
+/// Exposure ignores surfaces that emit light, translucent or not.
 TEST_F(AlphaSurfaces, PanesThatShineAreNotExposedFor) {
   look_from_above();
   gltf.at("/materials/2")["emissiveFactor"] = {1, 1, 1};
@@ -260,7 +260,7 @@ TEST_F(AlphaSurfaces, PanesThatShineAreNotExposedFor) {
   }
 }
 
-/// The half of a card that its texels leave is a rectangle: the shadow is that of one made of triangles.
+/// The half of a card that its texels leave is a rectangle: its shadow must be that of a rectangle made of triangles.
 TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
   half_a_card();
   const std::vector<std::string> samples = {"--light-samples", "256", "--bits", path("mask.bits")};
@@ -274,7 +274,8 @@ TEST_F(AlphaSurfaces, TexelsDecideOfHoles) {
   std::size_t penumbra = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) penumbra += half[i] > 0 && half[i] < 1 ? 1 : 0;
   EXPECT_GT(penumbra, mask.size() / 4);
-  // An edge exactly through a light sample: a texel's border and an edge have different rules there.
+  // They may differ where an edge passes exactly through a light sample: a texel's border and an edge have different
+  // rules there.
   std::size_t different = 0;
   for (std::size_t i = 0; i < mask.size(); ++i) different += mask[i] != half[i] ? 1 : 0;
   EXPECT_LE(different, mask.size() / 100);
@@ -313,7 +314,8 @@ TEST_F(AlphaSurfaces, MethodsDoItOrAreRefused) {
   for (const json& method : metrics.at("methods")) EXPECT_EQ(method.at("pairsDiffering"), 0) << method.at("method");
 }
 
-/// Penumbrae along triangles' edges know no other edges; the methods that the refusal names draw the hole.
+/// Methods that make penumbrae along triangles' edges cannot handle other edges; the methods that the refusal names
+/// draw the hole.
 TEST_F(AlphaSurfaces, MethodsOfEdgesSayWhyTheyRefuseHoles) {
   half_a_card();
   for (const char* method : {"smoothies", "penumbra-map", "silhouette-map", "plateaus"}) {
@@ -327,13 +329,13 @@ TEST_F(AlphaSurfaces, MethodsOfEdgesSayWhyTheyRefuseHoles) {
   }
 }
 
-/// The card's texels leave the rectangle of x in [0, 2] at height 2: of the light at height 5, x in [-1, 1], the floor
-/// at x sees the share that is seen beside x = 0 or x = 2 there. Maps hold the texels themselves, and no pair is asked
-/// again.
+/// The card's texels leave the rectangle of x in [0, 2] at height 2. Of the light at height 5, x in [-1, 1], the floor
+/// at x sees the part that appears outside x = 0 and x = 2 there. Maps hold the texels themselves, and no pair is
+/// tested again.
 TEST_F(AlphaSurfaces, MapMethodsDrawHoles) {
   half_a_card();
   const auto hidden = [](double x) {
-    // The light's points whose segments pass x = 0 and x = 2 at height 2.
+    // The range of the light's points whose segments pass between x = 0 and x = 2 at height 2.
     const double from = (0 - 0.6 * x) / 0.4, to = (2 - 0.6 * x) / 0.4;
     return std::max(0.0, std::min(to, 1.0) - std::max(from, -1.0)) / 2;
   };
@@ -348,7 +350,7 @@ TEST_F(AlphaSurfaces, MapMethodsDrawHoles) {
       EXPECT_NEAR(seen.floats.at("V")[i], 1 - hidden(seen.floats.at("P.X")[i]), bound) << method << " " << i;
     EXPECT_FALSE(json::parse(read("stats.json")).at("counters").contains("maskPairs")) << method;
   }
-  // Masks are still not asked about holes beside a pane whose light the host dims.
+  // With a pane whose light the host dims, masks are still not tested for holes.
   gltf.at("/meshes").push_back(json(gltf.at("/meshes/3")));
   gltf.at("/meshes/4/primitives/0")["material"] = 3;
   gltf.at("/materials").push_back({{"name", "Glass"}, {"alphaMode", "BLEND"}});

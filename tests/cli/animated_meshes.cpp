@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of what deforms, moves, folds, vanishes and lets light through: of a sequence, in which meshes are kept and
-// follow, each file is that of the frame by itself, byte for byte.
+// Tests frames of meshes that deform, move, fold, vanish and let light through. A sequence keeps meshes from frame to
+// frame and updates them; each file must equal that of the frame rendered alone, byte for byte.
 #include "tests/cli/program.hpp"
 
 #include "tests/unit/import/gltf_file.hpp"
@@ -18,7 +18,7 @@ using test::Gltf;
 
 constexpr std::size_t kBody = 0, kLamp = 1, kCamera = 2;
 
-/// A surface of 6 × 6 quads over a floor, under a lamp that is a mesh, seen from above and aside.
+/// A surface of 6 × 6 quads over a floor, under a lamp that is a mesh, seen obliquely from above.
 class Scene {
  public:
   Scene() {
@@ -51,7 +51,7 @@ class Scene {
     gltf.at("/scenes/0/nodes").push_back(gltf.at("/nodes").size() - 1);
     return gltf.at("/nodes").size() - 1;
   }
-  /// A primitive of the surface, each vertex of it where `place` has it.
+  /// Adds the surface's vertices, each at the position that `place` gives, and returns their accessor.
   template <typename Place>
   std::size_t vertices(const Place& place) {
     std::vector<float> all;
@@ -67,7 +67,7 @@ class Scene {
     const std::size_t places = vertices([](float x, float z) { return std::array{x, 0.25F * std::sin(9 * x * z), z}; });
     return {{"attributes", {{"POSITION", places}}}, {"indices", indices_}, {"material", 0}};
   }
-  /// Adds a shape key that moves each vertex by `place`; its weight goes 0, 1, 0 in frames 0, 1, 2.
+  /// Adds a shape key that moves each vertex by `place`; its weight is 0, 1, 0 in frames 0, 1, 2.
   template <typename Place>
   void shape_key(const Place& place) {
     gltf.at("/meshes/0/primitives/0")["targets"] = {{{"POSITION", vertices(place)}}};
@@ -92,7 +92,7 @@ class AnimatedMeshes : public ProgramTest {
   [[nodiscard]] std::uint64_t counter(int frame, const std::string& name) const {
     return json::parse(read(fmt::format("s.{}.json", frame))).at("counters").value(name, std::uint64_t{0});
   }
-  /// Frames 0 to 2 of the scene: in a sequence, and each by itself.
+  /// Renders frames 0 to 2 in a sequence and each one alone, and expects the same bytes.
   void expect_same_bytes(Scene& scene) {
     write("scene.glb", scene.gltf.glb());
     const std::vector<std::vector<std::string>> directions = {
@@ -133,7 +133,7 @@ TEST_F(AnimatedMeshes, ThatBend) {
   }
 }
 
-/// One half lies exactly on the other in frame 1: vertices meet, and part again.
+/// In frame 1 one half lies exactly on the other: vertices meet, and separate again.
 TEST_F(AnimatedMeshes, ThatFold) {
   Scene scene;
   const std::size_t flat = scene.vertices([](float x, float z) { return std::array{x, 0.0F, z}; });
@@ -168,7 +168,7 @@ TEST_F(AnimatedMeshes, WithBones) {
   expect_same_bytes(scene);
 }
 
-/// One is moved and turned, one vanishes; nothing else moves.
+/// One mesh moves and turns, one vanishes; nothing else moves.
 TEST_F(AnimatedMeshes, ThatMoveAndVanish) {
   Scene scene;
   scene.gltf.animate(kBody, "translation", {0, 2}, {0, 1, 0, 0.3F, 1.2F, 0.1F});
@@ -198,7 +198,7 @@ TEST_F(AnimatedMeshes, BeforeACameraThatMoves) {
   }
 }
 
-/// A pane and a surface with a cut-off, which are not among the casters that methods know.
+/// A pane and a surface with an alpha cut-off, which methods do not count among the casters.
 TEST_F(AnimatedMeshes, ThatLetLightThrough) {
   Scene scene;
   scene.shape_key([](float x, float z) { return std::array{0.1F * z, 0.3F * x, 0.05F * x}; });
@@ -216,7 +216,7 @@ TEST_F(AnimatedMeshes, ThatLetLightThrough) {
   expect_same_bytes(scene);
 }
 
-/// The mean of several moments is of meshes that follow one another, too.
+/// The meshes of several moments follow one another, too; the mean is that of the frame rendered alone.
 TEST_F(AnimatedMeshes, OfAnOpenShutter) {
   Scene scene;
   scene.shape_key([](float x, float z) { return std::array{0.1F * z, 0.3F * std::sin(5 * x + 3 * z), 0.05F * x}; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests which view samples methods do not evaluate, since V there is known or not written: no bit of a picture depends
-// on this.
+// Tests which view samples methods do not evaluate because V there is known or is not written: no bit of a picture
+// depends on this.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -32,7 +32,7 @@ class AskedSamples : public ProgramTest {
   }
 };
 
-/// Methods evaluate only view samples in the cone of a spot lamp whose V is not written.
+/// If a spot lamp's V is not written, methods evaluate only view samples in its cone.
 TEST_F(AskedSamples, BesideConesNothingIsAsked) {
   const auto spot = [](double x, bool smooth) {
     return json{{"name", smooth ? "smooth" : "sharp"},
@@ -88,7 +88,7 @@ TEST_F(AskedSamples, WhatIsStillIsAskedOnce) {
     for (std::size_t i = 0; i < mean.floats.at(channel).size(); ++i) {
       double sum = 0;
       for (const ExrFile& moment : moments) sum += double{moment.floats.at(channel)[i]};
-      // Times are computed in different orders, and may differ by a double's step; radiance goes up to 20.
+      // Times are computed in different orders and may differ by one rounding of a double; radiance goes up to 20.
       ASSERT_NEAR(mean.floats.at(channel)[i], sum / 3, 2e-5) << channel << " " << i;
       moving += moments[0].floats.at(channel)[i] != moments[2].floats.at(channel)[i] ? 1 : 0;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that each kind of wrong input costs a message that says what is wrong and where, and the right exit code: 2
-// wrong usage, 3 bad input, 4 device or resource. Never a crash, never a file left behind.
+// Tests that each kind of wrong input gives a message that says what is wrong and where, and the right exit code (2
+// wrong usage, 3 bad input, 4 device or resource), and never a crash or a file left behind.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -17,9 +17,9 @@ using testing::HasSubstr;
 
 struct BadScene {
   const char* name;
-  std::string text;                       ///< of scene.json
+  std::string text;                       ///< contents of scene.json
   std::vector<const char*> said;          ///< what stderr must say
-  std::string mesh_name = {}, mesh = {};  ///< another file beside it
+  std::string mesh_name = {}, mesh = {};  ///< a further file next to it
 };
 
 std::ostream& operator<<(std::ostream& stream, const BadScene& scene) {
@@ -30,7 +30,7 @@ std::string with_mesh(const std::string& file) {
   return scene_text_with("/meshes/1", R"({"name": "m", "file": ")" + file + "\"}");
 }
 
-/// A binary STL that promises 100 triangles and has half of one.
+/// A binary STL that announces 100 triangles and contains half of one.
 std::string truncated_stl() {
   std::string text(80, ' ');
   text += std::string("\x64\0\0\0", 4);
@@ -244,7 +244,7 @@ TEST_F(BadInput, DiskFullKeepsWhatStoodThere) {
 }
 
 TEST_F(BadInput, FullDevice) {
-  // Results on stdout count as output too.
+  // Results on stdout are output, too.
   const std::string command = std::string("'") + PENUMBRA_PROGRAM + "' methods >/dev/full 2>/dev/null";
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 4);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// bake: V and irradiance at texels and vertices against closed forms and against a render of the same points.
+// Tests bake: V and irradiance at texels and vertices, against closed forms and against a render of the same points.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 constexpr double kBakeRadiance = 10;
 
-/// A floor of 8 x 8 at y = 0, a square light of side 2 at y = 5 that faces it, and a tilted card in between, if wanted.
+/// A floor of 8 x 8 at y = 0, a square light of side 2 at y = 5 that faces it, and optionally a tilted card in between.
 json baked_floor(bool with_card) {
   json scene = json::parse(R"({"format": "penumbra-scene/1", "size": [16, 16],
     "camera": {"eye": [0, 4, 0], "target": [0, 0, 0], "up": [0, 0, -1], "orthographicHeight": 8},
@@ -39,8 +39,8 @@ json baked_floor(bool with_card) {
   return scene;
 }
 
-/// Returns, for a point on the floor, the integral of both cosines over π d² from the corner of a rectangle, x by z,
-/// that begins over the point at height h (the form factor of a differential area and a parallel rectangle).
+/// Returns, for a point on the floor, the integral of both cosines over π d² for a rectangle of x by z at height h, one
+/// corner of which is above the point (the form factor of a differential area and a parallel rectangle).
 double corner_form_factor(double x, double z, double h) {
   const double a = x / h, b = z / h, c = std::sqrt(1 + a * a), d = std::sqrt(1 + b * b);
   return (a / c * std::atan(b / c) + b / d * std::atan(a / d)) / (2 * std::numbers::pi);
@@ -87,7 +87,8 @@ TEST_F(Bake, AnOpenFloorHasTheClosedForm) {
   }
 }
 
-/// The camera looks straight down, so that pixels are texels, from between card and floor, so that all of it is seen.
+/// The camera looks straight down, so that pixels are texels, from between card and floor, so that the whole floor is
+/// visible.
 TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
   write("scene.json", baked_floor(true).dump());
   const std::vector<std::vector<std::string>> directions = {{},
@@ -106,7 +107,7 @@ TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
     render.insert(render.end(), direction.begin(), direction.end());
     const bool needs_perspective = !direction.empty() && direction.back().ends_with("-volume");
     const ExrFile map = bake(direction);
-    if (needs_perspective) {  // which an orthographic camera is not: the exact pairs judge
+    if (needs_perspective) {  // refuses an orthographic camera: exact areas judge instead
       std::size_t near = 0;
       const ExrFile exact = bake({});
       for (std::size_t i = 0; i < 256; ++i)
@@ -124,7 +125,7 @@ TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
     for (std::size_t i = 0; i < 256; ++i) {
       differing += map.floats.at("V")[i] != seen.floats.at("V")[i] ? 1 : 0;
       shadowed += map.floats.at("V")[i] < 1 ? 1 : 0;
-      // The floor's colour times irradiance over π is what a picture of it shows.
+      // A picture shows the floor's colour times irradiance over π.
       const double beauty = 0.5 * double{map.floats.at("R")[i]} / std::numbers::pi;
       if (!fits_map_to_view) {
         EXPECT_NEAR(seen.floats.at("R")[i], beauty, 1e-5 * beauty + 1e-7) << i;
@@ -135,15 +136,15 @@ TEST_F(Bake, TexelsHaveTheVOfPixelsThatSeeTheSamePoints) {
   }
 }
 
-/// Returns the form factor of a rectangle that stands on the plane of a differential area, from over the area's foot on
-/// it along z to `width`, at `distance`; odd in `width`.
+/// Returns the form factor of a rectangle that stands on the plane of a differential area at `distance`: its base
+/// begins at the point nearest to the area and extends along z to `width`. Odd in `width`.
 double standing_form_factor(double distance, double width, double height) {
   const double slant = std::hypot(distance, height);
   return (std::atan(width / distance) - distance / slant * std::atan(width / slant)) / (2 * std::numbers::pi);
 }
 
-/// A wall stands on the floor, from z = -2 to 2.5 and 3 high, under half a dome: closed form where areas are exact,
-/// and pixels that see the same points where directions are counted.
+/// A wall stands on the floor, from z = -2 to 2.5 and 3 high, under half a dome. Exact areas must be the closed form;
+/// counted directions must give the V of pixels that see the same points.
 TEST_F(Bake, UnderADomeAWallHidesItsFormFactor) {
   json scene = baked_floor(false);
   scene["meshes"].push_back(json::parse(
@@ -170,7 +171,7 @@ TEST_F(Bake, UnderADomeAWallHidesItsFormFactor) {
   }
 }
 
-/// A mesh that is there several times is baked where it stands, and shades as copies do.
+/// A mesh with instances is baked where it stands, and instances cast the same shadows as copies.
 TEST_F(Bake, AnInstancedMeshIsBakedWhereItStands) {
   json scene = baked_floor(true);
   json card = scene["meshes"][1];
@@ -187,18 +188,18 @@ TEST_F(Bake, AnInstancedMeshIsBakedWhereItStands) {
   EXPECT_EQ(bake({}).floats, shared.floats);
   EXPECT_GT(std::ranges::count_if(shared.floats.at("V"), [](float v) { return v > 0 && v < 1; }), 40);
 
-  // Several floors have one map: the first one's, and a warning counts the others.
+  // Several instances of the floor share one map, that of the first; a warning counts the others.
   scene["meshes"][0]["instances"] = json::parse(R"([{}, {"translate": [0, -3, 0]}])");
   write("scene.json", scene.dump());
   const ExrFile first = bake({});
-  for (const char* channel : {"V", "R", "P.Y"}) {  // the scene's centre moves: other floats, rounded by 2⁻²⁴ of 8
+  for (const char* channel : {"V", "R", "P.Y"}) {  // the scene's centre moves, so floats differ by 2⁻²⁴ of 8
     for (std::size_t i = 0; i < 256; ++i)
       EXPECT_NEAR(first.floats.at(channel)[i], shared.floats.at(channel)[i], 2e-5) << channel << ' ' << i;
   }
   EXPECT_THAT(run({"bake", path("scene.json"), "--mesh", "floor", "--size", "16", "-o", path("map.exr")}).err,
               HasSubstr("another triangle"));
 
-  // Nodes of glTF that share a mesh have names of their own.
+  // glTF nodes that share a mesh have separate names.
   test::Gltf gltf;
   gltf.at("/meshes").push_back(json::parse(R"({"primitives": [{"attributes": {}, "material": 0}]})"));
   auto& attributes = gltf.at("/meshes/2/primitives/0/attributes");
@@ -251,7 +252,7 @@ TEST_F(Bake, MarginsRepeatTheNearestTexelAndSayThatTheyAreMargins) {
   }
 }
 
-/// Texels' centres lie on edges of this fan, too: each has one triangle, and none has two.
+/// Some texel centres lie on edges of this fan: each must belong to exactly one triangle.
 TEST_F(Bake, ATriangulatedSquareHasNoCracks) {
   write("floor.obj",
         "v -4 0 4\nv 4 0 4\nv 4 0 -4\nv -4 0 -4\nv -1.25 0 0.75\nv 2 0 0.75\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// penumbra-bench: JSON lines, stable names. Sizes are tiny, and no time is looked at.
+// Tests penumbra-bench: JSON lines with stable names. Sizes are tiny, and times are not checked.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ class Bench : public ProgramTest {
     for (std::string line; std::getline(text, line);) parsed.push_back(json::parse(line));
     return parsed;
   }
-  /// One run of each at 16 × 16 pixels, lines in "lines".
+  /// Runs everything once at 16 × 16 pixels and writes the lines to "lines".
   [[nodiscard]] Outcome run_tiny(std::vector<std::string> more) const {
     std::vector<std::string> arguments = {"--scene", tiny_scene(), "--size", "16",
                                           "--runs",  "1",          "--json", path("lines")};
@@ -102,7 +102,7 @@ TEST_F(Bench, KnotsHaveTheTrianglesAskedFor) {
                  "none", "--runs", "1", "--json", path("lines")})
                 .code,
             0);
-  EXPECT_EQ(line_of(lines("lines"), "knot-600/size=16/n=16/view-sample").at("triangles"), 602);  // and the floor's 2
+  EXPECT_EQ(line_of(lines("lines"), "knot-600/size=16/n=16/view-sample").at("triangles"), 602);  // with the floor's 2
 }
 
 TEST_F(Bench, PartsOnTheProcessor) {
@@ -115,7 +115,7 @@ TEST_F(Bench, PartsOnTheProcessor) {
                                          "cpu/edge-records/triangles=6000", "cpu/edge-hierarchy/triangles=6000",
                                          "cpu/wedges/original/edges=500", "cpu/wedges/tight/edges=500"));
   for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].contains("growth"), i >= 3 && i < 6) << all[i];
-  EXPECT_EQ(all[0].at("items"), 3 * 600 / 2 + 5);  // a closed mesh's, and the floor's
+  EXPECT_EQ(all[0].at("items"), 3 * 600 / 2 + 5);  // edges of a closed mesh, and the floor's 5
   EXPECT_EQ(all[7].at("counters").at("wedge"), 500);
 }
 
@@ -129,7 +129,7 @@ TEST_F(Bench, WholeFrames) {
     double sum = 0;
     for (const char* phase : {"floats", "mesh", "view", "light", "evaluate"})
       sum += seconds.contains(phase) ? seconds.at(phase).at("median").get<double>() : 0;
-    EXPECT_DOUBLE_EQ(line.at("frame").at("median"), sum) << line;  // of one run
+    EXPECT_DOUBLE_EQ(line.at("frame").at("median"), sum) << line;  // all from one run
     double next_sum = 0;
     for (const char* phase : {"floats", "mesh", "view", "light", "evaluate"})
       next_sum +=
@@ -144,7 +144,7 @@ TEST_F(Bench, WholeFrames) {
                  path("sphere")})
                 .code,
             0);
-  EXPECT_EQ(lines("sphere")[0].at("triangles"), 602);  // and the floor's 2
+  EXPECT_EQ(lines("sphere")[0].at("triangles"), 602);  // with the floor's 2
 }
 
 TEST_F(Bench, Sequences) {
@@ -187,7 +187,7 @@ TEST_F(Bench, WrongUseIsTold) {
       {"--scene", scene, "--light-half", "1", "--light-half", "1"},
       {"--scene", "knot:7"},
       {"--scene", "sphere:7"},
-      {"--scene", scene, "--frame", "--light-samples", "64"},  // the program on Embree takes as many at first
+      {"--scene", scene, "--frame", "--light-samples", "64"},  // too few: the Embree program begins with 64
       {"--scene", scene, "--frame", "--cpu"},
       {"--scene", scene, "--method", "nothing"},
       {"--runs"},

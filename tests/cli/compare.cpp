@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `compare`: the files it writes, the numbers it claims, the answers it gives by its exit code.
+// Tests `compare`: the files it writes, the numbers it reports, and its exit codes.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -49,7 +49,7 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
   for (const char* phase : {"load", "mesh", "view", "light", "evaluate"}) sum += seconds.at(phase).get<double>();
   EXPECT_DOUBLE_EQ(seconds.at("total").get<double>(), sum);
 
-  // The counts again, computed from the files.
+  // Computes the counts again from the files.
   const auto mine = tests::read_bits(path("dir/view-sample.bits")),
              other = tests::read_bits(path("dir/reference.bits"));
   std::uint64_t all = 0, penumbra = 0, differing = 0;
@@ -75,7 +75,7 @@ TEST_F(Compare, OnTheSameSamplesPairsAreCounted) {
             differing);
 }
 
-/// A method that gives areas on request has no pairs, whatever the table of methods says about it; its error is given.
+/// A method that gives areas on request has no pairs, whatever the table of methods says about it, but it has an error.
 TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
   const Outcome outcome =
       compare({"--methods", "edge-scatter:rows=exact,edge-scatter,edge-scatter:rows=exact", "--bits", "--reference",
@@ -100,9 +100,9 @@ TEST_F(Compare, ExactRowsAreAreasAndHaveErrorsButNoPairs) {
   EXPECT_EQ(bits.code, 2) << bits.err;
 }
 
-/// A method that fails takes nothing away from the others, and the command ends with its exit code.
+/// A method that fails does not affect the others, and the command ends with that method's exit code.
 TEST_F(Compare, AMethodThatFailsIsReportedAndTheOthersGoOn) {
-  // Files that an earlier run made must not stay beside the new report; files that are not ours stay.
+  // Files of an earlier run must not stay next to the new report; other files stay.
   std::filesystem::create_directories(path("dir"));
   for (const char* ending : {".exr", "-error.png", ".png"})
     write("dir/edge-scatter,engine=vulkan" + std::string(ending), "old");
@@ -146,8 +146,8 @@ TEST_F(Compare, ARefusalLeavesNoFolders) {
   EXPECT_TRUE(std::filesystem::is_empty(path("kept")));
 }
 
-/// An evenly spaced sample of differing pairs is decided if they are too many to decide each, and metrics.json says how
-/// large the sample is.
+/// If too many pairs differ to decide each one, an evenly spaced sample of them is decided, and metrics.json gives the
+/// sample's size.
 TEST_F(Compare, VerdictsAreGivenBySamplingWhereTooManyPairsDiffer) {
   const Outcome outcome = compare({"--methods", "accumulate:size=8,raytrace", "--light-samples", "64",
                                    "--reference-samples", "same", "--size", "96x64"});
@@ -185,7 +185,7 @@ TEST_F(Compare, ErrorsCanBeRecomputedFromTheImages) {
   EXPECT_GT(method["error"]["rmse"].get<double>(), 0);
 }
 
-/// Each light by itself, and all together: here of one pixel, whose V stands in the pictures.
+/// Errors are given for each light and for all together; here for one pixel, whose V is read from the pictures.
 TEST_F(Compare, EveryLightIsJudged) {
   write("two.json", scene_text_with("/lights/1", R"({"name": "rim", "disk": {"center": [2, 4, 1],
       "normal": [-0.3, -1, 0], "radius": 0.6}})"));
@@ -211,8 +211,8 @@ TEST_F(Compare, EveryLightIsJudged) {
   }
 }
 
-/// The report shows, without being asked, what a method with masks does wrong apart from what the number of light
-/// samples costs.
+/// By default the report shows what a method with masks does wrong, separately from the error due to the number of
+/// light samples.
 TEST_F(Compare, ExactnessIsShownWhateverTheReferenceIs) {
   ASSERT_EQ(compare({"--methods", "view-sample,pcss", "--light-samples", "64"}).code, 0);
   const json result = metrics();
@@ -224,7 +224,7 @@ TEST_F(Compare, ExactnessIsShownWhateverTheReferenceIs) {
   EXPECT_EQ(same.at("error").at("max"), 0);
   EXPECT_GT(exact.at("error").at("max"), 0);
   EXPECT_TRUE(scalar.at("lights").at(0).at("sameSamples").is_null());
-  // The whole error is therefore what 64 light samples cost.
+  // So the whole error comes from having only 64 light samples.
   EXPECT_EQ(result.at("sameSamples").at("method"), "raytrace");
   EXPECT_EQ(result["sameSamples"]["lightSamples"], 64);
   EXPECT_EQ(result["sameSamples"]["lights"][0]["error"], exact["error"]);
@@ -264,11 +264,11 @@ TEST_F(Compare, TheExactReferenceEvaluatesChosenPixelsAlone) {
   EXPECT_EQ(result.at("reference").at("method"), "exact");
   EXPECT_EQ(result.at("judgedPixels"), 40);
   EXPECT_TRUE(result.at("methods").at(0).at("pairs").is_null());
-  // Two convex occluders and what they share: three times the bound of tests/unit/exact_method.cpp, at 32 rows.
+  // Two convex occluders and their overlap: three times the bound of tests/unit/exact_method.cpp, at 32 rows.
   EXPECT_LT(result.at("methods").at(0).at("error").at("max"), 3 * 2.0 / 32);
   EXPECT_EQ(result.at("methods").at(1).at("error").at("max"), 0);
   const std::uint64_t evaluated = result.at("reference").at("counters").at("viewSamples");
-  EXPECT_GE(evaluated, 40u);  // and those at the horizon
+  EXPECT_GE(evaluated, 40u);  // and pixels at the horizon
   EXPECT_LE(evaluated, 40u + result.at("horizonPixels").get<std::uint64_t>());
   const ExrFile picture = read_exr(path("dir/reference.exr"));
   std::size_t known = 0;
@@ -293,7 +293,7 @@ TEST_F(Compare, DefaultIsEveryGeometryAndImageMethodThatIsNotOnRequest) {
         continue;
       }
       expected.push_back(method.at("name"));
-      if (method.at("name") == "edge-scatter") expected.emplace_back("edge-scatter:rows=exact");  // as exactArea says
+      if (method.at("name") == "edge-scatter") expected.emplace_back("edge-scatter:rows=exact");  // its exactArea
     }
   }
   EXPECT_EQ(names, expected);
@@ -302,7 +302,7 @@ TEST_F(Compare, DefaultIsEveryGeometryAndImageMethodThatIsNotOnRequest) {
   EXPECT_EQ(result["methods"][0]["lights"][0]["lightSamples"], 16);
   EXPECT_EQ(result["methods"][1]["lights"][0]["quantity"], "area");
   EXPECT_EQ(result["methods"][1]["lightSamples"], 0);
-  // An option that excludes the areas leaves out nothing else.
+  // An option that excludes the areas leaves out only them.
   const Outcome vulkan = compare({"--methods", "geometry", "--method-option", "engine=vulkan", "--light-samples", "4",
                                   "--reference-samples", "4"});
   EXPECT_EQ(vulkan.code, 0) << vulkan.err;

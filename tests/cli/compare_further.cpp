@@ -54,8 +54,8 @@ TEST_F(CompareFurther, ErrorsByClassAddUp) {
   EXPECT_GT(pixels_of("cast"), 0U);
   EXPECT_LE(std::max(pixels_of("cast"), pixels_of("self")), pixels_of("penumbra") + pixels_of("umbra"));
   EXPECT_EQ(method.at("lights").at(0).at("classes"), classes);
-  // Ranges divide the penumbra, and all shadows, where a ray met what hides the light; texels of a map of half the size
-  // are twice as wide, except for its border.
+  // The ranges divide the penumbra, and all shadow pixels, where a ray met what hides the light; texels of a map of
+  // half the size are twice as wide, except for its border.
   const auto shared = [](const json& ranges) {
     std::uint64_t known = 0;
     double end = 0;
@@ -75,7 +75,7 @@ TEST_F(CompareFurther, ErrorsByClassAddUp) {
 }
 
 /// Computes the visible errors and the beauty's parts again from the EXRs. A map with a bias as large as the scene
-/// shows V = 1 everywhere: its beauty is ∫G.
+/// gives V = 1 everywhere: its beauty is ∫G.
 TEST_F(CompareFurther, EyeAndSeparationAreThoseOfThePictures) {
   ASSERT_EQ(
       compare({"--methods", "pcss:size=64,shadow-map:size=8:bias=1024,edge-scatter", "--reference", "exact"}).code, 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All meshes of two packages and the shipped scenes, through the program as a user runs it: inspected, rendered by two
-// exact methods and by rays, and their faces counted by other code. Prints what came of it as a table.
+// Takes all meshes of two packages and the shipped scenes through the program as a user would: they are inspected,
+// rendered by two exact methods and by rays, and their faces are counted by other code. Prints the results as a table.
 #include "mesh/import.hpp"
 
 #include "base/error.hpp"
@@ -58,8 +58,9 @@ class CorpusSweep : public ProgramTest {
     compare(file, report["bounds"]);
   }
 
-  /// The mesh, two units large, just above a floor (not on it: rays are no judge of surfaces in one plane) under a
-  /// lamp, whose odd numbers keep its samples out of the planes of a box's sides. False if it cannot be put there.
+  /// Writes a scene with the mesh, two units large, just above a floor (not on it, because rays cannot judge coplanar
+  /// surfaces) under a lamp whose odd numbers keep its samples out of the planes of a box's sides. Returns false if the
+  /// mesh cannot be placed.
   bool write_scene(const std::filesystem::path& file, const json& bounds) {
     double extent = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
@@ -94,7 +95,7 @@ class CorpusSweep : public ProgramTest {
         run({"compare", is_scene ? file.string() : path("scene.json"), "-o", path("out"), "--methods",
              "edge-scatter,view-sample", "--reference", "raytrace", "--reference-samples", "same", "--light-samples",
              "64", "--size", "96x96", "--runs", "1", "--allow-outside", "--quiet"});
-    // A mesh at the end of double's range is a bad input to a scene; a sphere light, to these methods.
+    // A mesh at the end of double's range is bad input for a scene, and a sphere light for these methods.
     EXPECT_TRUE(outcome.code == 0 || outcome.code == 2 || outcome.code == 3) << outcome.code << ": " << outcome.err;
     if (outcome.code != 0) {
       fmt::print("not compared: {}: {}\n", file.string(), outcome.err);

@@ -10,7 +10,7 @@
 namespace penumbra::tests {
 namespace {
 
-using Code = std::uint64_t;  // up to three (factor, value), 20 bits each, ascending
+using Code = std::uint64_t;  // up to three (factor, value) pairs of 20 bits each, ascending
 
 Code code_of(std::size_t factor, std::size_t value) {
   return static_cast<Code>(factor) << 10U | static_cast<Code>(value + 1);
@@ -24,7 +24,7 @@ bool apart(const Factor& a, const Factor& b) {
   return !a.group.empty() && !b.group.empty() && a.group != b.group;
 }
 
-/// Pairs of factors that are in two groups, asked once.
+/// Which pairs of factors are wanted (not those of two different groups), computed once.
 class Pairs {
  public:
   explicit Pairs(const std::vector<Factor>& factors) : count_(factors.size()) {
@@ -83,8 +83,8 @@ void for_each_combination_with(const Pairs& pairs, const Choices& row, std::size
   }
 }
 
-/// Chooses the factor's value, and the values of other factors that it needs in order to mean something. False if one
-/// of these factors has another value already.
+/// Chooses the factor's value, and the values of other factors on which its meaning depends. Returns false if one of
+/// these factors already has another value.
 bool choose(const std::vector<Factor>& factors, std::size_t factor, std::size_t value, Choices& row) {
   if (row[factor] && *row[factor] != value) return false;
   row[factor] = value;
@@ -117,7 +117,7 @@ class Generator {
   }
 
  private:
-  /// All combinations of `left` more factors from `first` on.
+  /// Adds all combinations of `left` more factors, starting at `first`.
   void collect(const Choices& row, std::size_t first, std::size_t left) {
     if (left == 0) {
       add(row);
@@ -154,7 +154,7 @@ class Generator {
 
   Choices completed(Choices row, std::size_t number) {
     const std::size_t count = row.size();
-    for (std::size_t i = 0; i < 2 * count; ++i) {  // twice: what means nothing at first may mean something later
+    for (std::size_t i = 0; i < 2 * count; ++i) {  // twice: a factor without meaning at first may gain one
       const std::size_t factor = (i + number) % count;
       if (!row[factor] && means_something(row, factor)) row[factor] = best_value(row, factor);
     }
@@ -167,7 +167,7 @@ class Generator {
     return !only_if || row[only_if->first] == only_if->second;
   }
 
-  /// The allowed value that covers the most open combinations; of several, the one that was used least.
+  /// Returns the allowed value that covers the most open combinations; if there are several, the one used least.
   [[nodiscard]] std::optional<std::size_t> best_value(Choices row, std::size_t factor) const {
     std::optional<std::size_t> best;
     std::pair<std::size_t, std::size_t> best_gain;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render` through a thin lens: circles of confusion by their closed form.
+// Tests `render` through a thin lens against the closed form of circles of confusion.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -20,7 +20,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 
 constexpr std::uint32_t kSize = 48;
-constexpr double kHalfFov = 0.25;  // its tangent; of an orthographic picture, half its height
+constexpr double kHalfFov = 0.25;  // tangent of half the field of view; for an orthographic picture, half its height
 
 /// A card in the plane z = −depth, seen along −z from the origin, under a lamp.
 class DepthOfField : public ProgramTest {
@@ -28,7 +28,7 @@ class DepthOfField : public ProgramTest {
   struct Card {
     double left, right, bottom, top, depth;
   };
-  /// `lens`: members of the camera.
+  /// `lens`: further members of the camera.
   void write_scene(const Card& card, const json& lens, bool orthographic = false) const {
     json scene = {{"format", "penumbra-scene/1"},
                   {"size", {kSize, kSize}},
@@ -55,14 +55,14 @@ class DepthOfField : public ProgramTest {
   }
 };
 
-/// The share of a disk of radius 1 that is left of x.
+/// Returns the share of a disk of radius 1 to the left of x.
 double share_left_of(double x) {
   x = std::clamp(x, -1.0, 1.0);
   return 0.5 + (x * std::sqrt(1 - x * x) + std::asin(x)) / std::numbers::pi;
 }
 
-/// Across an edge A is the share of the circle of confusion, of radius R |1 − z / d| at depth z with the focus at d,
-/// that is on the card. Rows are all alike, and their mean has little of the noise of 64 points.
+/// Across an edge, A is the share of the circle of confusion that is on the card; its radius is R |1 − z / d| at depth
+/// z with the focus at d. All rows are alike, so that their mean has little of the noise of 64 points.
 TEST_F(DepthOfField, AnEdgeIsAsWideAsItsCircleOfConfusion) {
   for (const bool orthographic : {false, true}) {
     const double radius = orthographic ? 0.2 : 0.5;
@@ -84,14 +84,14 @@ TEST_F(DepthOfField, AnEdgeIsAsWideAsItsCircleOfConfusion) {
         most = std::max(most, std::abs(mean - expected));
         between += expected > 0.01 && expected < 0.99 ? 1 : 0;
       }
-      EXPECT_LT(most, 0.01);  // of 48 rows of 64 points, of which a pixel alone is off by 0.02 (RMS)
+      EXPECT_LT(most, 0.01);  // over 48 rows of 64 points; a single pixel is off by 0.02 (RMS)
       EXPECT_GT(between, 8u);
     }
   }
 }
 
-/// A small card is spread over a disk: as much of it as without a lens, around the same middle, and as far along both
-/// axes as a disk's points are, a quarter of its radius squared.
+/// A small card is spread over a disk: its total area and its middle are the same as without a lens, and its variance
+/// along each axis is that of a disk, a quarter of the radius squared.
 TEST_F(DepthOfField, APointIsADisk) {
   constexpr double kRadius = 0.2, kDepth = 2, kFocus = 4, kHalf = 0.05, kMiddle = 0.05;
   constexpr std::uint32_t kWide = 96;
@@ -107,9 +107,10 @@ TEST_F(DepthOfField, APointIsADisk) {
   }
   const double circle = kRadius * std::abs(1 - kDepth / kFocus);
   const double spread = circle * circle / 4 + kHalf * kHalf / 3 + pixel * pixel / 12;
-  // A pixel of the disk sees the card with this share of its lens. Independent points (stratified ones have less noise)
-  // give the sum over all of the disk's pixels this relative standard deviation, the mean of x half the radius' part of
-  // it, and the mean of x² a quarter of the square's: the standard deviations of x and x² over a disk. Four of each.
+  // Each pixel of the disk sees the card through this share of the lens. `noise` is four times the relative standard
+  // deviation of the sum over the disk's pixels for independent points (stratified ones have less noise). For the mean
+  // of x it is scaled by half the radius, for that of x² by a quarter of the radius squared: the standard deviations of
+  // x and x² over a disk.
   const double share = 4 * kHalf * kHalf / (std::numbers::pi * circle * circle);
   const double pixels = std::numbers::pi * circle * circle / (pixel * pixel);
   const double noise = 4 * std::sqrt((1 - share) / (64 * share * pixels));
@@ -119,7 +120,7 @@ TEST_F(DepthOfField, APointIsADisk) {
   EXPECT_NEAR(square_y / sum, spread, noise * circle * circle / 4);
 }
 
-/// The whole lens sees one point at the focus distance; the answer of the pixel's centre is the lens's, too.
+/// At the focus distance the whole lens sees one point. Channels of the pixel's centre do not depend on the lens.
 TEST_F(DepthOfField, WhatIsInFocusIsSharp) {
   const Card card{-0.1, 0.171, -0.3, 0.222, 2};
   write_scene(card, {{"aperture", 0.2}});  // sharp at the target, one away
@@ -139,7 +140,8 @@ TEST_F(DepthOfField, WhatIsInFocusIsSharp) {
   EXPECT_EQ(picture({"--pixel-samples", "16"}).floats, blurred.floats) << "the points are fixed";
 }
 
-/// Moments share the lens: sixteen of one view sample see as much of it as one of sixteen, of what does not move.
+/// Moments share the lens: for what does not move, sixteen moments of one view sample cover the lens like one moment of
+/// sixteen.
 TEST_F(DepthOfField, MomentsShareTheLens) {
   (void)moving_scene();
   const auto blurred = [&](std::vector<std::string> more) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests domes as a user meets them: what `render` gives by default, files that hold light samples, the directions in
-// which pictures of the sky look, and refusals.
+// Tests domes as a user meets them: what `render` computes by default, files that hold light samples, the orientation
+// of sky pictures, and refusals.
 
 #include "tests/cli/program.hpp"
 #include "tests/report_json.hpp"
@@ -68,14 +68,15 @@ TEST_F(DomeCommands, OfOneRadianceAreExactByDefault) {
     EXPECT_NEAR(by_rows.floats.at("R")[i], exact.floats.at("R")[i], 1e-6);
     if (exact.floats.at("A")[i] == 0) {
       EXPECT_EQ(exact.floats.at("V")[i], 1);
-      EXPECT_EQ(exact.floats.at("R")[i], 0);  // no geometry, and not visible
+      EXPECT_EQ(exact.floats.at("R")[i], 0);  // the background: domes are not visible
     } else if (std::abs(exact.floats.at("N.Y")[i] - 1) < 1e-6F) {
       EXPECT_NEAR(exact.floats.at("R")[i], 2 * 0.5 * exact.floats.at("V")[i], 1e-6);  // irradiance / π times the colour
     }
   }
 }
 
-/// --bits has the directions: V of a floor that looks up is the sum of their heights, visible over all above.
+/// --bits holds the directions: V of a floor that faces up is the sum of the visible directions' heights over that of
+/// all directions above the horizon.
 TEST_F(DomeCommands, BitsHoldDirections) {
   scene(R"({"name": "sky", "dome": {"rotate": 30}})");
   ASSERT_EQ(render({"--method", "view-sample", "--light-samples", "100", "--sample-pattern", "sobol", "--bits",
@@ -118,7 +119,7 @@ TEST_F(DomeCommands, BitsHoldDirections) {
   EXPECT_GT(partly, 50U);
 }
 
-/// The report draws a dome's light samples in the unit disk, each in a place of its own, and with their masks.
+/// The report draws a dome's light samples in the unit disk, each at its own place and with its mask.
 TEST_F(DomeCommands, ReportsDrawLightSamples) {
   scene(R"({"name": "sky", "dome": {"half": true}})");
   ASSERT_EQ(run({"compare", path("scene.json"), "-o", path("dir"), "--runs", "1", "--methods", "raytrace",
@@ -137,9 +138,9 @@ TEST_F(DomeCommands, ReportsDrawLightSamples) {
   EXPECT_EQ(within, 32) << "half of them are above 30 degrees, where half of the solid angle is";
 }
 
-/// The picture's right half is along +X, where the wall is; with a rotation by half a turn it is not.
+/// The picture's right half is toward +X, where the wall is; after half a turn it is not.
 TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
-  sky(6, 1);  // turns from 3/4 to 7/8: from +X toward +Z; 0 to 45 degrees high
+  sky(6, 1);  // azimuth from 3/4 to 7/8 of a turn, from +X toward +Z; 0 to 45 degrees high
   const auto mean_v = [&](const std::string& dome) {
     scene(fmt::format(R"({{"name": "sky", "dome": {}}})", dome));
     const Outcome outcome = render({});
@@ -159,7 +160,7 @@ TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   EXPECT_LT(mean_v(R"({"image": "sky.hdr"})"), 0.1);
   EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 180})"), 1);
   EXPECT_EQ(mean_v(R"({"image": "sky.hdr", "rotate": 270})"), 1);  // from +Z toward −X
-  // A texel's radiance 1 over its solid angle, at the mean height: what the floor gets of it.
+  // The floor's irradiance from a texel of radiance 1: its solid angle times the mean height.
   constexpr double kTurn = 2 * 3.14159265358979;
   const double irradiance = kTurn / 8 * 0.25;  // ∫ h dh dφ, h from 0 to cos 45°, φ over an eighth of a turn
   const ExrFile exr = image();
@@ -169,7 +170,8 @@ TEST_F(DomeCommands, APictureLooksWhereItIsTurned) {
   }
 }
 
-/// A dome may ask for its light samples; beside it other lights keep their exact areas. A named method has its say.
+/// A dome may ask for light samples (`sampled`); other lights next to it keep their exact areas. A named method decides
+/// for itself.
 TEST_F(DomeCommands, SampledOnesAreCountedByDefault) {
   sky(6, 1);
   for (const char* parts : {R"("half": true)", R"("image": "sky.hdr")"}) {

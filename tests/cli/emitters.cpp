@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Emissive meshes of glTF that are no flat convex outline: pictures against points on their triangles, summed here.
+// Tests emissive glTF meshes that are not flat convex outlines: pictures against sums over points on their triangles.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -26,7 +26,7 @@ using testing::HasSubstr;
 
 constexpr double kRadiance = 20, kColor = 0.5;
 
-/// The triangles of a glTF primitive, with a vertex each corner, in single precision.
+/// Adds the triangles of a glTF primitive, with a vertex for each corner, in single precision.
 std::size_t add_triangles(test::Gltf& gltf, const LampMesh& mesh) {
   std::vector<float> values;
   for (const mesh::Triangle& t : mesh.triangles) {
@@ -51,14 +51,14 @@ bool meets(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& from, con
   return a >= 0 && b >= 0 && a + b <= 1 && t > 0 && t < 1;
 }
 
-/// Estimates for one point of the floor from points on the lamp, with the standard errors of both numbers.
+/// Estimates for one point of the floor, from points on the lamp, with the standard errors of both numbers.
 struct Truth {
-  double v = 0, v_error = 0, irradiance = 0, irradiance_error = 0;  ///< irradiance over π and radiance: a form factor
+  double v = 0, v_error = 0, irradiance = 0, irradiance_error = 0;  ///< irradiance / (π · radiance)
   bool lit = false;
 };
 
-/// Random points on the triangles that emit toward p, each as likely as any other place of the same size. The lamp
-/// hides none of its own light; `card` does.
+/// Takes random points, uniform over the area of the triangles that emit toward p. The lamp hides none of its own
+/// light; `card` does.
 Truth truth_at(const glm::dvec3& p, const LampMesh& lamp, bool two_sided, const LampMesh& card, std::mt19937& random) {
   constexpr int kPoints = 1500;
   std::vector<double> up_to;
@@ -97,16 +97,16 @@ Truth truth_at(const glm::dvec3& p, const LampMesh& lamp, bool two_sided, const 
   }
   truth.v = seen / kPoints;
   truth.irradiance = sum / kPoints;
-  // Strata only make it smaller. That none of n points is seen has a probability below exp(−15) where more than 15 / n
-  // of the light is: five times this.
+  // Stratification only makes it smaller. If more than 15 / n of the light is visible, all n points are hidden with a
+  // probability below exp(−15), and 15 / n is five times this least error.
   truth.v_error = std::sqrt(std::max(truth.v * (1 - truth.v), 9.0 / kPoints) / kPoints);
   truth.irradiance_error = std::sqrt(std::max(squares / kPoints - truth.irradiance * truth.irradiance, 0.0) / kPoints) +
                            3 * largest / kPoints;
   return truth;
 }
 
-/// A floor of 8 × 8, a card of 3 × 3 at y = 1.5 over a part of it, and a lamp above both; a camera between floor and
-/// card looks down at the floor.
+/// A floor of 8 × 8, a card of 3 × 3 at y = 1.5 over a part of it, and a lamp above both. The camera, between floor and
+/// card, looks down at the floor.
 class Emitters : public ProgramTest {
  protected:
   Emitters() {
@@ -137,7 +137,7 @@ class Emitters : public ProgramTest {
     gltf.at("/materials/1")["doubleSided"] = two_sided;
     write("scene.glb", gltf.glb());
   }
-  /// A lamp whose parts stand in one another's light is refused; leniently read it hides none of its own light.
+  /// A lamp whose parts hide one another's light is refused; with --lenient it hides none of its own light.
   void expect_truth_if_lenient(bool both) {
     const Outcome outcome = run({"render", path("scene.glb"), "-o", path("out.exr"), "--size", "24x16"});
     EXPECT_EQ(outcome.code, 3) << outcome.err;
@@ -145,7 +145,8 @@ class Emitters : public ProgramTest {
                                    HasSubstr("--lenient")));
     expect_truth(both, 0, {"--lenient"});
   }
-  /// `both`: what p is behind emits toward it, too. `bias`: by how much, in proportion, the light may differ by rights.
+  /// `both`: triangles that p is behind emit toward it, too. `bias`: the relative error of the light that has a known
+  /// reason.
   void expect_truth(bool both, double bias = 0, std::vector<std::string> more = {}) {
     more.insert(more.begin(), {"render", path("scene.glb"), "-o", path("out.exr"), "--size", "24x16"});
     const Outcome outcome = run(more);
@@ -158,7 +159,7 @@ class Emitters : public ProgramTest {
       const Truth truth = truth_at(p, lamp_, both, card_, random);
       const double v = exr.floats.at("V")[i], e = exr.floats.at("R")[i] / (kColor * kRadiance);
       partly += truth.v > 0.05 && truth.v < 0.95 ? 1 : 0;
-      // V of a sphere is that of its disk: not that of its surface.
+      // V of a sphere light is that of its disk, not that of its surface.
       if (bias == 0) {
         EXPECT_NEAR(v, truth.v, 5 * truth.v_error) << "pixel " << i;
       }
@@ -196,11 +197,11 @@ TEST_F(Emitters, AStarAndTwoPanels) {
 TEST_F(Emitters, BallsCoarseAndFine) {
   set_lamp(test::ball_lamp({0.3, 3, -0.2}, 0.6, 0), true);
   expect_truth(false);
-  set_lamp(test::ball_lamp({0.3, 3, -0.2}, 0.6, 2), true);  // a sphere: recognised
-  expect_truth(false, 0.0025);                              // import/gltf/emitters/sphere_light.hpp
+  set_lamp(test::ball_lamp({0.3, 3, -0.2}, 0.6, 2), true);  // recognised as a sphere
+  expect_truth(false, 0.0025);                              // see import/gltf/emitters/sphere_light.hpp
 }
 
-/// Six lights and one light of the same floats.
+/// One light of six pieces, and six lights, made of the same floats.
 TEST_F(Emitters, SixRectanglesAreTheCubeToTheBit) {
   set_lamp(test::cube_lamp({0.25, 3.5, -0.25}, 0.5), true);
   ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("one.json")}).code, 0);
@@ -228,7 +229,7 @@ TEST_F(Emitters, SixRectanglesAreTheCubeToTheBit) {
     EXPECT_EQ(one.floats.at("Lamp.R"), one.floats.at("R"));
     EXPECT_EQ(one.floats.at("Lamp.V"), one.floats.at("V"));
     for (std::size_t i = 0; i < one.floats.at("V").size(); ++i) {
-      double seen = 0, faces = 0;  // of equal area; V of a face is 0 behind it and below it, where E is, too
+      double seen = 0, faces = 0;  // of equal area; behind a face or below it, its V is 0, and so is its irradiance
       for (int face = 0; face < 6; ++face) {
         const auto& rectangle = light.at("pieces").at(static_cast<std::size_t>(face)).at("rectangle");
         const auto vector = [&](const char* key) {
@@ -267,7 +268,7 @@ TEST_F(Emitters, OneLightForEveryCommand) {
   EXPECT_EQ(method.at("error").at("max"), 0);
   EXPECT_GT(metrics.at("judgedPixels"), 300);
 
-  // `convert` writes the same light: with a body, and without one.
+  // `convert` writes the same light, with its body and without.
   ASSERT_EQ(run({"render", path("scene.glb"), "-o", path("first.exr"), "--size", "24x16"}).code, 0);
   const std::vector<float> v = read_exr(path("first.exr")).floats.at("V");
   ASSERT_EQ(run({"convert", path("scene.glb"), "-o", path("copy.json")}).code, 0);
@@ -278,12 +279,13 @@ TEST_F(Emitters, OneLightForEveryCommand) {
   for (const char* copy : {"copy.json", "bare.json", "bare.glb"}) {
     ASSERT_EQ(run({"render", path(copy), "-o", path("copy.exr"), "--size", "24x16"}).code, 0) << copy;
     const std::vector<float> again = read_exr(path("copy.exr")).floats.at("V");
-    // Another centre of the scene, other floats: rounding of 2⁻²⁴ of 8 in corners of edges that are at least 0.1 long.
+    // The scene's centre differs, and so do floats: rounding of 2⁻²⁴ of 8 in corners of edges that are at least 0.1
+    // long.
     for (std::size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(again[i], v[i], 1e-4) << copy << " pixel " << i;
   }
 }
 
-/// A sign that glows is lit like what does not, and has its own light on top.
+/// A glowing sign receives the same light as one that does not glow, and its own light is added.
 TEST_F(Emitters, AreLitByOtherLights) {
   set_lamp(test::cube_lamp({0.25, 3.5, -0.25}, 0.5), true);
   LampMesh sign;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `compare --error-budget` on scenes with one cause of error each: the budget must name it, with its sign. The scenes
-// are a floor that casts nothing, under casters that receive nothing, with the light at height 5; exact areas judge.
+// Tests `compare --error-budget` on scenes with one cause of error each: the budget must name that cause, with its
+// sign. The scenes have a floor that casts nothing, casters that receive nothing, and a light at height 5; exact areas
+// judge.
 #include "base/image.hpp"
 #include "base/png.hpp"
 #include "tests/cli/program.hpp"
@@ -21,7 +22,7 @@ constexpr const char* kCauses[] = {"resolution", "view", "layers", "fusion", "ga
 
 class ErrorBudget : public ProgramTest {
  protected:
-  /// Casters as members of "meshes", a comma before each.
+  /// `casters`: members of "meshes", each after a comma.
   [[nodiscard]] std::string scene_with(const std::string& casters, double light_half = 0.6) const {
     const std::string half = std::to_string(light_half);
     return write("scene.json", R"({"format": "penumbra-scene/1", "size": [20, 16],
@@ -33,7 +34,7 @@ class ErrorBudget : public ProgramTest {
                                    half + R"(, 0, 0], "halfV": [0, 0, )" + half + "]}}]}")
         .string();
   }
-  /// A rectangle, as a caster.
+  /// A rectangular caster.
   static std::string plate(const std::string& center, const std::string& u, const std::string& v) {
     return R"(, {"name": "plate )" + center + R"(", "receivesShadow": false, "quad": {"center": [)" + center +
            R"(], "halfU": [)" + u + R"(], "halfV": [)" + v + "]}}";
@@ -45,7 +46,7 @@ class ErrorBudget : public ProgramTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  /// The first method's numbers.
+  /// Returns the first method's numbers.
   [[nodiscard]] json explain(const std::string& scene, const std::string& method) const {
     const Outcome outcome = compare(scene, method, {"--sample-pixels", "40"});
     EXPECT_EQ(outcome.code, 0) << outcome.err;
@@ -57,14 +58,14 @@ class ErrorBudget : public ProgramTest {
     return result;
   }
   static double number(const json& result, const char* cause) { return result.at("errorBudget").at(cause); }
-  /// Sums in units of 2⁻³² of the light, a few edges, against doubles; V is stored in float.
+  /// Tolerance: sums of a few edges in units of 2⁻³² of the light, against doubles; V is stored in float.
   static constexpr double kSums = 1e-6;
   static double rmse(const json& result) { return result.at("error").at("rmse"); }
 };
 
-/// Two long strips at different heights whose shadows on the light overlap as seen from the floor, and not from the
+/// Two long strips at different heights. Their shadows on the light overlap as seen from the floor, but not from the
 /// light's centre. Each hides less than half of the light, 0.35 · 5 / 3.5 / 1.2 and 0.15 · 5 / 1.5 / 1.2 of its width,
-/// so no sum is cut off: where they overlap V is too dark by their overlap.
+/// so that no sum is cut off: V is too dark by the overlap.
 TEST_F(ErrorBudget, WhereShadowsAreAddedTwiceItIsFusion) {
   const json result = explain(scene_with(plate("-0.225, 3.5, 0", "0.175, 0, 0", "0, 0, -3") +
                                          plate("0.125, 1.5, 0", "0.075, 0, 0", "0, 0, -3")),
@@ -73,7 +74,7 @@ TEST_F(ErrorBudget, WhereShadowsAreAddedTwiceItIsFusion) {
   EXPECT_LT(number(result, "fusion"), -0.6 * rmse(result));
   EXPECT_GT(number(result, "resolution"), -0.3 * rmse(result));
   for (const char* cause : {"layers", "gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
-  // Nothing is seen twice from the light's own points: the single view adds what overlaps.
+  // Views from the light's own points count nothing twice: the single view adds what overlaps.
   EXPECT_LT(number(result, "view"), -0.6 * rmse(result));
 }
 
@@ -94,11 +95,11 @@ TEST_F(ErrorBudget, WhereTexelsAreLargeItIsResolution) {
   const json result = explain(scene_with(plate("0.03, 2.5, 0.02", "0.4, 0, 0", "0, 0, -0.4")), "backproject:size=16");
   EXPECT_LT(number(result, "resolution"), -0.5 * rmse(result));
   for (const char* cause : {"layers", "gaps", "bias"}) EXPECT_EQ(number(result, cause), 0) << cause;
-  // Bits of 1024 light samples say the same except for their own error.
+  // Bits of 1024 light samples give the same result, up to their own error.
   EXPECT_NEAR(number(result, "fusion"), 0, 0.01);
 }
 
-/// A plate that the light's centre sees edge-on: in no layer of any size is anything of it.
+/// A plate that the light's centre sees edge-on is in no layer of any map.
 TEST_F(ErrorBudget, WhatTheCentreDoesNotSeeIsView) {
   const json result = explain(scene_with(plate("0, 2.5, 0", "0, 0.8, 0", "0, 0, -0.6"), 1), "backproject:size=64");
   EXPECT_GT(rmse(result), 0.02);
@@ -110,8 +111,8 @@ TEST_F(ErrorBudget, WhatTheCentreDoesNotSeeIsView) {
   EXPECT_EQ(result.at("errorBudgetRuns").at("allButView").at("rmse"), result["error"]["rmse"]);
 }
 
-/// A plate tilted about one axis, whose texels have a depth each: between their patches are gaps and overlaps. Bits
-/// join what overlaps, and the gaps leak; sums are darkened by the overlaps as much as the gaps lighten them.
+/// A plate tilted about one axis: each texel has its own depth, and patches leave gaps and overlaps. Bits unite what
+/// overlaps, so that the gaps leak; sums are darkened by the overlaps as much as the gaps lighten them.
 TEST_F(ErrorBudget, BetweenPatchesOfATiltedPlateAreGaps) {
   const json joined = explain(scene_with(plate("0, 2.5, 0", "0.8, 1.2, 0", "0, 0, -0.9")),
                               "bitmask:occluder=patch:size=32,backproject:size=32:fill=none");
@@ -132,14 +133,14 @@ TEST_F(ErrorBudget, WhereTheShadowIsForgivenItIsBias) {
   EXPECT_NEAR(number(result, "fusion"), 0, 0.01);
 }
 
-/// Volumes that add what two strips hide are wrong where the strips overlap as seen from the floor. The strips are
-/// parallel to the light, so their silhouettes are right.
+/// Methods of volumes add what two strips hide, which is wrong where the strips overlap as seen from the floor. The
+/// strips are parallel to the light, so their silhouettes are right.
 TEST_F(ErrorBudget, WhereVolumesAreAddedTwiceItIsFusion) {
   const json result = explain(scene_with(plate("-0.225, 3.5, 0", "0.175, 0, 0", "0, 0, -3") +
                                          plate("0.125, 1.5, 0", "0.075, 0, 0", "0, 0, -3")),
                               "soft-volume,soft-irregular:umbra=layers,soft-volume-blend");
   EXPECT_LT(result.at("error").at("bias").get<double>(), 0);
-  // Bits of 1024 light samples are off by 0.0025 themselves.
+  // Bits of 1024 light samples have an error of 0.0025 themselves.
   EXPECT_NEAR(number(result, "fusion"), -rmse(result), 0.005);
   EXPECT_NEAR(number(result, "view"), 0, kSums);
   for (const char* cause : {"resolution", "layers", "gaps", "bias", "samples", "falloff"})
@@ -164,7 +165,7 @@ TEST_F(ErrorBudget, WhatTheCentreSeesEdgeOnIsViewOfVolumes) {
   EXPECT_TRUE(hard.at("errorBudget").at("fusion").is_null());
 }
 
-/// A plate below another: where the outline of the one gives light back, the other still hides it.
+/// A plate below another: where one plate's outline gives light back, the other plate still hides it.
 TEST_F(ErrorBudget, WhereTheMapHasOneLayerItIsLayers) {
   const json result =
       explain(scene_with(plate("0, 3.5, 0", "0.3, 0, 0", "0, 0, -0.3") + plate("0, 1, 0", "0.7, 0, 0", "0, 0, -0.7")),
@@ -175,7 +176,7 @@ TEST_F(ErrorBudget, WhereTheMapHasOneLayerItIsLayers) {
   EXPECT_LT(number(result, "remainder"), 0.005);
 }
 
-/// One plate: nothing overlaps, and what the centre sees is what the floor sees. What is left is the ramp.
+/// One plate: nothing overlaps, and the light's centre sees the same as the floor. The remaining error is the ramp's.
 TEST_F(ErrorBudget, WhereARampStandsForAnAreaItIsFalloff) {
   const json result = explain(scene_with(plate("0.03, 2.5, 0.02", "0.4, 0, 0", "0, 0, -0.4")), "wedge-ramp");
   EXPECT_GT(rmse(result), 0.01);
@@ -183,7 +184,8 @@ TEST_F(ErrorBudget, WhereARampStandsForAnAreaItIsFalloff) {
   EXPECT_TRUE(result.at("errorBudget").at("view").is_number());
 }
 
-/// Methods each of whose bits is right have no error but their light samples'; hard shadows none but their one view.
+/// Methods whose every bit is right have only the error of their light samples; hard shadows have only that of their
+/// single view.
 TEST_F(ErrorBudget, WhereLightSamplesAreFewItIsSamples) {
   const Outcome outcome = compare(scene_with(plate("0.03, 2.5, 0.02", "0.4, 0, 0", "0, 0, -0.4")),
                                   "edge-scatter,hierarchical-penumbra,alias-free,edge-scatter:rows=exact,"
@@ -199,15 +201,15 @@ TEST_F(ErrorBudget, WhereLightSamplesAreFewItIsSamples) {
   EXPECT_NEAR(number(methods.at(2), "view"), -rmse(methods.at(2)), kSums);
   EXPECT_TRUE(methods.at(2).at("errorBudget").at("samples").is_null()) << "it looks from the light's centre";
   EXPECT_TRUE(methods.at(3).at("errorBudget").at("samples").is_null()) << "it has none";
-  // The centre's silhouettes are the floor's: they are no part of the error of four samples. Of 1024 samples in 32 rows
-  // half a row along one side of the plate's shadow is 1 / 64.
+  // The centre's silhouettes are also the floor's, and so have no part in the error of four samples. With 1024 samples
+  // in 32 rows, half a row along one side of the plate's shadow is 1 / 64.
   EXPECT_NEAR(number(methods.at(4), "samples"), -rmse(methods.at(4)), 1.0 / 64);
   EXPECT_EQ(number(methods.at(4), "view"), 0);
   EXPECT_LT(number(methods.at(5), "samples"), -0.5 * rmse(methods.at(5))) << "maps of 256 texels are good ones";
 }
 
-/// A method whose light samples are as many as a repair's has no repair; a table's cause is its own; causes that a
-/// repair would mix are not separated.
+/// There is no repair if a method has as many light samples as the repair; a table's error has a separate cause; causes
+/// that a repair would mix are not separated.
 TEST_F(ErrorBudget, SaysWhatOfVolumesCannotBeDone) {
   const Outcome outcome = compare(
       scene_with(plate("0, 2.5, 0", "0.4, 0, 0", "0, 0, -0.4")),
@@ -285,7 +287,7 @@ TEST_F(ErrorBudget, IsRefusedWhereThereAreReferencesAlone) {
   EXPECT_FALSE(std::filesystem::exists(path("dir")));
 }
 
-/// Parts of a light with a texture would have none, and texels that are left out have no other form: both are said.
+/// A light with a texture has no parts, and texels that are left out have no other form: metrics.json says both.
 TEST_F(ErrorBudget, SaysWhatCannotBeDone) {
   Image8 image{2, 1, {{255, 255, 255}, {0, 0, 0}}};
   write_png(path("window.png"), image);
@@ -304,7 +306,7 @@ TEST_F(ErrorBudget, SaysWhatCannotBeDone) {
   for (const char* part : {"view", "remainder"}) EXPECT_TRUE(peel["errorBudget"].at(part).is_number()) << part;
 }
 
-/// Every light has its own, over its own judged pixels; the first light's stands again beside the method.
+/// Every light has its own budget over its own judged pixels; the first light's is repeated for the method.
 TEST_F(ErrorBudget, EachLightIsExplained) {
   const std::filesystem::path one_light = scene_with(plate("0, 2.5, 0", "0.4, 0, 0", "0, 0, -0.4"));
   json scene = json::parse(read(one_light.filename()));
@@ -327,7 +329,7 @@ TEST_F(ErrorBudget, EachLightIsExplained) {
       }
     }
   }
-  // Whichever comes first is explained as it is among others.
+  // A light that comes first is explained as it is among others.
   const Outcome first = run({"compare", both, "-o", path("first"), "--runs", "1", "--reference", "exact", "--methods",
                              "pcss:size=32", "--error-budget", "--sample-pixels", "all", "--light", "round"});
   const Outcome among = run({"compare", both, "-o", path("among"), "--runs", "1", "--reference", "exact", "--methods",
@@ -337,7 +339,7 @@ TEST_F(ErrorBudget, EachLightIsExplained) {
             json::parse(read("among/metrics.json")).at("methods").at(0).at("lights").at(1).at("errorBudget"));
 }
 
-/// Progress is a line every five seconds, in place of a bar, if stderr is no terminal.
+/// If stderr is no terminal, progress is a line every five seconds instead of a bar.
 using ErrorBudgetFull = ErrorBudget;
 TEST_F(ErrorBudgetFull, SaysHowFarItIs) {
   const Outcome outcome =

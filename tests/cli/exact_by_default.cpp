@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render` without options: exact areas where nobody asks for light samples, and which options ask for them.
+// Tests `render` without options: it gives exact areas unless light samples are asked for, and which options ask for
+// them.
 
 #include "tests/cli/program.hpp"
 
@@ -35,7 +36,7 @@ class ExactByDefault : public ProgramTest {
     if (outcome.code != 0) return {};
     return {read_exr(path("out.exr")), json::parse(read("stats.json")), outcome.err};
   }
-  /// Expects the same statement about the first light in both files.
+  /// Expects both files to say this about the first light.
   static void expect_first_light(const Rendered& rendered, const json& expected) {
     const json &stats = rendered.stats, &light = stats.at("lights").at(0);
     const auto& header = rendered.image.attributes;
@@ -82,7 +83,7 @@ TEST_F(ExactByDefault, ThreeOptionsAskForLightSamples) {
   expect_first_light(render({"--light-samples", "16"}), counts);
 }
 
-/// A method that was named stays, and its own options are stronger than the default.
+/// A named method is kept, and its own options override the default.
 TEST_F(ExactByDefault, OfAMethodThatWasNamedToo) {
   tiny_scene();
   EXPECT_EQ(render({"--method", "edge-scatter"}).stats["lights"][0]["quantity"], "area");
@@ -114,7 +115,7 @@ TEST_F(ExactByDefault, EstimatesAreNoCounts) {
                              Not(HasSubstr("256")), Not(HasSubstr("exact area"))));
 }
 
-/// A sun beside rectangles: what each light gives is the same together.
+/// A sun among rectangle lights: each light's V does not depend on the order of lights.
 TEST_F(ExactByDefault, LightByLight) {
   write("scene.json", scene_text_with("/lights/1", kSun));
   json both = json::parse(read("scene.json"));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wedges --explain and the coverage that --validate checks: what is printed, written as JSON, drawn, and refused.
+// Tests wedges --explain, and the coverage that --validate checks: what is printed, written as JSON, drawn, and
+// refused.
 #include "tests/cli/program.hpp"
 #include "tests/unit/textured_lights_support.hpp"
 
@@ -18,8 +19,8 @@ using testing::Not;
 
 using ExplainCommand = ProgramTest;
 
-/// A floor seen from above, from 4 units up with a field of view of 90°: pixel (x, y) of 8 × 8 is the floor's point
-/// (x − 3.5, y − 3.5). A board of half-size 0.25 at height 1 under a light of half-size `half` at height 2.
+/// A floor seen from above, from 4 units up with a field of view of 90°: pixel (x, y) of 8 × 8 shows the floor at
+/// (x − 3.5, y − 3.5). A board of half-size 0.25 is at height 1, under the light.
 std::string scene_with(const std::string& light, const std::string& meshes = "") {
   return R"({"format": "penumbra-scene/1", "size": [8, 8],
     "camera": {"eye": [0, 4, 0], "target": [0, 0, 0], "up": [0, 0, -1], "verticalFov": 90},
@@ -37,8 +38,8 @@ const std::string kSquare =
 
 TEST_F(ExplainCommand, NamesEveryWedgeAndAddsUpToTheExactArea) {
   const std::string scene = write("scene.json", scene_with(kSquare)).string();
-  // The pixel's floor point is (0.5, 0, 0.5): the board appears at s in (0, 1), t in (−1, 0): a quarter of the light,
-  // two of its edges on the light's rim and two through its centre.
+  // The pixel's floor point is (0.5, 0, 0.5). The board appears at s in (0, 1), t in (−1, 0), a quarter of the light:
+  // two of its edges are on the light's rim and two pass through its centre.
   const Outcome outcome = run({"wedges", scene, "--explain", "4,4", "--json", path("w.json"), "--svg", path("w.svg")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("pixel 4,4: floor"), HasSubstr("V = 0.75"), HasSubstr("exact area"),
@@ -111,14 +112,15 @@ TEST_F(ExplainCommand, SaysWhyThereIsNothingToAdd) {
   };
   said("0,0", "background, no surface; V = 1");
   said("6,6", "mat receives no shadow; V = 1");
-  EXPECT_EQ(files(), std::vector<std::string>{"scene.json"});  // no picture of nothing
+  EXPECT_EQ(files(), std::vector<std::string>{"scene.json"});  // there is nothing to draw
   const std::string below = write("below.json", scene_with(R"({"name": "key", "rectangle":
       {"center": [0, -2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}})"))
                                 .string();
   EXPECT_THAT(run({"wedges", below, "--explain", "1,4"}).out, HasSubstr("behind the light; V = 0"));
 }
 
-/// The board's edge at z = 0.25 appears through the middle of the light, whose other edges are beside it: V is half.
+/// The board's edge at z = 0.25 appears through the middle of the light, and its other edges beside the light: V is
+/// half.
 TEST_F(ExplainCommand, ASphereIsTheDiskThatFacesThePixel) {
   for (const char* light :
        {R"({"name": "bulb", "sphere": {"center": [0.5, 2, 0], "radius": 0.25}})",
@@ -138,8 +140,8 @@ TEST_F(ExplainCommand, ASphereIsTheDiskThatFacesThePixel) {
 }
 
 TEST_F(ExplainCommand, WeighsATexture) {
-  // One row of two texels: black where s < 0, white where s > 0. Below the board's middle the light's half with s > 0
-  // has twice its weight: the board hides the quarter s in (0, 1), t in (−1, 0), so half of what shines.
+  // One row of two texels: black where s < 0, white where s > 0. Seen from below the board's middle, the light's half
+  // with s > 0 has twice its weight: the board hides the quarter s in (0, 1), t in (−1, 0), half of what shines.
   write("half.png", tests::png_file(2, 1, 8, 0, {std::string("\x00\xff", 2)}));
   const std::string scene = write("scene.json", scene_with(R"({"name": "key", "texture": "half.png",
         "rectangle": {"center": [0, 2, 0], "halfU": [1, 0, 0], "halfV": [0, 0, 1]}})"))
@@ -175,8 +177,8 @@ TEST_F(ExplainCommand, DrawsWhereItIsAskedToAlone) {
   EXPECT_THAT(outcome.out, Not(HasSubstr("picture")));
 }
 
-/// A box on the floor, looked at from all sides: edges of the face that a pixel shows are silhouettes without that face
-/// alone, and have no wedges. A construction that is too narrow is named all the same.
+/// A ball on the floor, seen from all sides. Edges of the face that a pixel shows are silhouettes only without that
+/// face, and have no wedges. A construction that is too narrow is still named.
 TEST_F(ExplainCommand, NamesEdgesOutsideTheirWedgesOfWrongConstructionsAlone) {
   const std::string box = R"({"name": "ball", "shape": {"type": "sphere", "center": [-0.5, 0.5, 0], "radius": 0.5,
     "segments": 12}},)";
@@ -196,7 +198,7 @@ TEST_F(ExplainCommand, NamesEdgesOutsideTheirWedgesOfWrongConstructionsAlone) {
       EXPECT_EQ(alarms("original", pixel), 0) << pixel;
     }
   }
-  // Pixels of shipped scenes at which edges of the carrying triangle appear.
+  // Pixels of shipped scenes where edges of the receiver's own triangle appear.
   for (const auto& [shipped, pixel] : {std::pair{"/self-shadow.json", "45,40"}, {"/thin.json", "32,72"}}) {
     const Outcome outcome =
         run({"wedges", std::string(PENUMBRA_SCENES) + shipped, "--size", "128x128", "--explain", pixel});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents of OUT.exr that compositors use: layers of each light, mattes, matrices, names.
+// Tests contents of OUT.exr that compositors use: layers of each light, mattes, matrices, names.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -22,8 +22,8 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-/// Hashes that others give: Appleby's function on Wikipedia's examples, numbers of the Cryptomatte specification's own
-/// test.
+/// Compares with published hashes: Appleby's function on Wikipedia's examples, and numbers of the Cryptomatte
+/// specification's own test.
 TEST(CryptomatteNames, AreThoseOfOthers) {
   EXPECT_EQ(session::murmur3(""), 0u);
   EXPECT_EQ(session::murmur3("test"), 0xba6bd213u);
@@ -100,7 +100,7 @@ TEST_F(Layers, NamesCanBeForetold) {
     return session::layer_names(lights);
   };
   using Names = std::vector<std::string>;
-  // Names that can be layers stay, whatever comes before them.
+  // Names that are valid layers stay as they are, whatever comes before them.
   EXPECT_EQ(layers_of({"N", "N_2", "a.b", "a_b", "V", "Z", "id", "R"}),
             (Names{"N_3", "N_2", "a_b_2", "a_b", "V", "Z", "id", "R"}));
   EXPECT_EQ(layers_of({"a_b", "a.b", "a/b", "N_2", "N"}), (Names{"a_b", "a_b_2", "a_b_3", "N_2", "N_3"}));
@@ -193,7 +193,7 @@ TEST_F(Layers, HalfAndCompressionChangeColoursAlone) {
   EXPECT_THAT(bright.err, HasSubstr("beyond 65504"));
 }
 
-/// Blender has room for 63 bytes of "layer.channel", Nuke and Blender call channels without a layer by names of theirs.
+/// Blender has room for 63 bytes of "layer.channel"; Nuke and Blender give channels without a layer names of their own.
 TEST_F(Layers, NamesFitIntoHosts) {
   const std::string letters = "\xd0\x96";  // one letter, two bytes
   std::string cyrillic;
@@ -239,7 +239,7 @@ TEST_F(Layers, TrianglesHaveNumbersThatCompositorsTake) {
 TEST_F(Layers, ALightThatLightsNothingIsNamed) {
   scene_with({"key", "fill"});
   json scene = json::parse(read("scene.json"));
-  scene["lights"][1]["rectangle"]["halfU"] = {-0.5, 0, 0};  // it shines up
+  scene["lights"][1]["rectangle"]["halfU"] = {-0.5, 0, 0};  // the light shines up
   write("scene.json", scene.dump());
   const Outcome outcome = run({"render", path("scene.json"), "-o", path("out.exr")});
   EXPECT_EQ(outcome.code, 0);
@@ -247,7 +247,7 @@ TEST_F(Layers, ALightThatLightsNothingIsNamed) {
   EXPECT_THAT(outcome.err, testing::Not(HasSubstr("\"key\"")));
 }
 
-/// World positions times the header's matrices are pixels and depths.
+/// World positions times the header's matrices give pixels and depths.
 TEST_F(Layers, MatricesLeadFromTheWorldToThePicture) {
   scene_with({"key"});
   json scene = json::parse(read("scene.json"));

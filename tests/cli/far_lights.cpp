@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights that the default method cannot hold beside the scene in float32: another takes them, and says so.
+// Tests lights that the default method cannot represent in float32 together with the scene: another method takes its
+// place and says so.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -43,8 +44,8 @@ class FarLights : public ProgramTest {
   }
 };
 
-/// A sphere of the sun's size at the sun's distance, in metres, is a sun of that angle: its centre's direction differs
-/// by 10 / 1.5e11 across the scene.
+/// A sphere of the sun's size at the sun's distance, in metres, equals a sun of that angle: the direction to its centre
+/// differs by 10 / 1.5e11 across the scene.
 TEST_F(FarLights, AStarIsASun) {
   const double distance = 1.5e11, radius = 6.96e8;
   const double angle = 2 * std::asin(radius / distance) * 180 / std::numbers::pi;
@@ -56,7 +57,7 @@ TEST_F(FarLights, AStarIsASun) {
       render(fmt::format(R"({{"name": "sol", "sun": {{"direction": [-0.6, -0.8, 0], "angle": {}}}}})", angle));
   EXPECT_EQ(sun.method, "edge-scatter");
   EXPECT_LT(largest_difference(star.v, sun.v), 1e-5);
-  // Rays look at its light samples, whose V is that of the area except for their number.
+  // Rays use light samples; their V is that of the area, up to the error of counting.
   const Rendered rays = render(R"({"name": "sol", "sphere": {"center": [9e10, 1.2e11, 0], "radius": 6.96e8}})",
                                {"--light-samples", "256"});
   EXPECT_EQ(rays.method, "raytrace");
@@ -82,7 +83,7 @@ TEST_F(FarLights, EveryKindIsDone) {
   }
 }
 
-/// Areas work beyond the reach of Embree's float32, too: coordinates end at 1e12, so the scene is small.
+/// Areas work beyond the reach of Embree's float32, too. Coordinates end at 1e12, so the scene is small.
 TEST_F(FarLights, BeyondRaysAreAreas) {
   write("small.json", R"({"format": "penumbra-scene/1", "size": [12, 8],
     "camera": {"eye": [0, 0.002, 0.003], "target": [0, 0, 0]},
@@ -96,7 +97,7 @@ TEST_F(FarLights, BeyondRaysAreAreas) {
   EXPECT_THAT(read_exr(path("out.exr")).floats.at("V"), testing::Each(1.0F));
 }
 
-/// A method that was named is not replaced, and of a comparison's methods those that cannot are left out by name.
+/// A named method is not replaced; a comparison leaves out, by name, those of its methods that cannot handle the light.
 TEST_F(FarLights, ANamedMethodRefuses) {
   write("far.json",
         scene_text_with("/lights", R"([{"name": "ball", "sphere": {"center": [0, 1e12, 0], "radius": 1e10}}])"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `submit`: the sequence that `render --frames` makes, by several processes, here or by a batch script; what fails is
-// named, and nothing is rendered twice.
+// Tests `submit`: it renders the same sequence as `render --frames` in several processes, here or by a batch script;
+// failures are named, and nothing is rendered twice.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -46,7 +46,7 @@ class Farm : public ProgramTest {
                  const std::map<std::string, std::string>& environment = {}) const {
     return run(sequence("submit", folder, more), environment);
   }
-  /// The pictures in the folder are those of `render`, of these frames alone.
+  /// Expects the pictures in the folder to be those of `render`, and only of these frames.
   void expect_pictures(const std::string& folder,
                        const std::vector<std::string>& frames = {"0000", "0002", "0004", "0006", "0008", "0010"}) {
     if (!std::filesystem::exists(path("whole"))) {
@@ -67,8 +67,8 @@ class Farm : public ProgramTest {
     EXPECT_THAT(found, testing::UnorderedElementsAreArray(expected));
   }
 
-  /// Programs by the names of Slurm's, which do what these would, at once and one after the other. The file `lost` in
-  /// the folder names a task that never begins, once.
+  /// Writes programs with the names of Slurm's that do the same at once, one task after the other. If the file `lost`
+  /// in the folder names a task, that task does not begin, once.
   std::map<std::string, std::string> fake_slurm() const {
     const auto program = [&](const std::string& name, const std::string& text) {
       std::filesystem::permissions(write("bin/" + name, "#!/bin/bash\n" + text), std::filesystem::perms::owner_all);
@@ -110,7 +110,7 @@ TEST_F(Farm, WithTwoWorkersHereIsTheSequence) {
   expect_pictures("here");
 }
 
-/// A folder is where frame 4 goes; frame 6 is there already.
+/// A folder stands where frame 4 should be written; frame 6 already exists.
 TEST_F(Farm, AFrameThatFailsIsNamedAndTheOthersAreDone) {
   ASSERT_EQ(run(sequence("render", "whole", {"--exposure", "first"})).code, 0);
   std::filesystem::create_directories(path("here/s.0004.exr"));
@@ -145,7 +145,7 @@ TEST_F(Farm, AScriptOfOddNamesIsRunAsItIs) {
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("#SBATCH --array=0-1\n"), HasSubstr("\n  2-4x2\n  6-10x2\n"),
                                  HasSubstr("#SBATCH --partition=\"ren der\"\n"), HasSubstr("#SBATCH --requeue\n")));
   EXPECT_FALSE(std::filesystem::exists(path(odd + "/s.farm"))) << "nothing is written";
-  // The script alone, as Slurm runs it: each task, by bash, from elsewhere.
+  // Runs the script alone as Slurm would: each task by bash, from another folder.
   const std::string script = write("script.sh", outcome.out).string();
   const auto bash = [&](const std::string& command) {
     return std::system(("cd / && " + command + " 2>/dev/null").c_str());
@@ -159,7 +159,7 @@ TEST_F(Farm, AScriptOfOddNamesIsRunAsItIs) {
   EXPECT_EQ(bash("bash '" + script + "' summary >/dev/null"), 0) << "all are there";
 }
 
-/// A first frame that is not there yet is asked for in words that render it.
+/// If the first frame does not exist yet, the script contains the command that renders it.
 TEST_F(Farm, ADryRunRendersNothing) {
   const Outcome outcome = submit("dry", {"--dry-run"}, {{"PATH", "/nowhere"}});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -175,7 +175,7 @@ TEST_F(Farm, AnArrayIsRenderedAndItsSummarySubmitsWhatWasLost) {
   const Outcome outcome = submit("farm", {"--chunk", "1"}, environment);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "7 8\n");
-  // The number of tasks is the most that an array may have; the first frame was rendered by `submit`.
+  // An array may have at most 3 tasks; `submit` has rendered the first frame.
   EXPECT_THAT(outcome.err, HasSubstr("5 frames in 3 tasks are job 7, its summary is job 8"));
   EXPECT_THAT(read("bin/summary.8"), HasSubstr("2 frames in 2 tasks are job 9, its summary is job 10"));
   EXPECT_THAT(read("bin/summary.10"), HasSubstr("all 6 frames are there\n0\n"));
@@ -249,7 +249,7 @@ TEST_F(Farm, AllCamerasAndNumberedFilesGoWithThem) {
   EXPECT_EQ(read_exr(path("c.B.2.0002.exr")).attributes.at("penumbra.exposure"), "-2.5");
 }
 
-/// --exposure takes another picture's.
+/// --exposure can name another picture, whose exposure is used.
 TEST_F(Farm, AnExposureMayBeAnothersPictures) {
   ASSERT_EQ(run({"render", scene_, "-o", path("a.exr"), "--size", "12x8"}).code, 0);
   ASSERT_EQ(

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `submit` on a farm: Slurm's own daemons, started here with two nodes on this machine, and a node that dies in the
-// middle.
+// Tests `submit` on a farm: Slurm's own daemons, started here with two nodes on this machine, and a node that dies
+// during the work.
 #include "tests/cli/program.hpp"
 
 #include "app/process/child_program.hpp"
@@ -32,7 +32,7 @@ namespace {
 using app::ChildProgram;
 using testing::HasSubstr;
 
-/// A port that nobody listens on.
+/// Returns a port on which nothing listens.
 int free_port() {
   const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address{};
@@ -51,7 +51,7 @@ std::string file_text(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Running processes for which it holds; they are shown the folder in /proc.
+/// Returns the running processes for which `wanted` holds, given their folder in /proc.
 std::vector<pid_t> processes(const std::function<bool(const std::filesystem::path&)>& wanted) {
   std::vector<pid_t> found;
   for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -79,12 +79,12 @@ class FarmSlurmFull : public ProgramTest {
     if (daemons_.empty()) return;
     (void)slurm({"scancel", "--user=" + user()});
     (void)eventually(30, [&] { return slurm({"squeue", "--noheader"}).empty(); });
-    while (!daemons_.empty()) daemons_.pop_back();  // the last first: nodes, controller, munge
+    while (!daemons_.empty()) daemons_.pop_back();  // in reverse order: nodes, controller, munge
   }
 
   static std::string user() { return ::getpwuid(::getuid())->pw_name; }
 
-  /// Daemons end with this test; what they say is in the folder.
+  /// Starts a daemon, which ends with this test; its output is in the folder.
   void daemon(const std::string& name, std::vector<std::string> command) {
     std::vector<std::string> words = {"sh", "-c", "PATH=$PATH:/usr/sbin; exec \"$@\" >\"$0\" 2>&1",
                                       path(name + ".out")};
@@ -93,7 +93,7 @@ class FarmSlurmFull : public ProgramTest {
   }
 
   void start() {
-    std::filesystem::permissions(folder_, std::filesystem::perms(0755));  // munge asks for no less, Slurm for no more
+    std::filesystem::permissions(folder_, std::filesystem::perms(0755));  // munge needs no less, Slurm allows no more
     std::string key(1024, '\0');
     std::random_device random;
     for (char& c : key) c = static_cast<char>(random());
@@ -146,7 +146,7 @@ SchedulerParameters=sched_interval=2,bf_interval=2
         << read("slurmctld.out") << read("n1.out");
   }
 
-  /// Returns the output of a command of Slurm; empty if it fails.
+  /// Returns the output of a Slurm command, or an empty string if it fails.
   std::string slurm(std::vector<std::string> command) { return app::run_program(std::move(command)).output; }
 
   static bool eventually(int seconds, const std::function<bool()>& holds) {
@@ -170,11 +170,11 @@ SchedulerParameters=sched_interval=2,bf_interval=2
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  /// Returns whether the file is the log of a task or summary; frames have their own.
+  /// Returns whether the file is the log of a task or a summary; frames have separate logs.
   static bool is_log(const std::filesystem::path& path) {
     return path.extension() == ".log" && !path.filename().string().starts_with("frame-");
   }
-  /// All of these of a farm's folder.
+  /// Returns all logs of a farm's folder.
   std::string logs(const std::string& folder) const {
     std::string all;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -210,7 +210,7 @@ SchedulerParameters=sched_interval=2,bf_interval=2
   std::vector<std::unique_ptr<ChildProgram>> daemons_;
 };
 
-/// Twelve frames on two nodes; the first is pulled out while it renders, when it has finished a frame of its task.
+/// Twelve frames on two nodes; the first node is killed while it renders, after it has finished a frame of its task.
 TEST_F(FarmSlurmFull, NothingIsLostWithANodeAndNothingRenderedTwice) {
   const Outcome alone = sequence("render", "whole", {"--exposure", "first"});
   ASSERT_EQ(alone.code, 0) << alone.err;
@@ -290,7 +290,7 @@ TEST_F(FarmSlurmFull, AFrameThatFailsIsReported) {
       << logs(path("farm/s.farm")) << slurm({"squeue"});
 }
 
-/// A cancelled array is not submitted again; the first frame's job may itself be on the farm.
+/// A cancelled array is not submitted again; the first frame may itself be rendered by a job on the farm.
 TEST_F(FarmSlurmFull, WhatWasCancelledIsReportedAndNotSubmittedAgain) {
   const Outcome outcome = sequence("submit", "farm", {"--chunk", "4"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;

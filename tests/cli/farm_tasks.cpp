@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The arithmetic of `submit`: which frames go into which task, and how many; and words for a shell.
+// Tests the arithmetic of `submit` (which frames go into which task, and how many), and the quoting of words for a
+// shell.
 #include "tests/cli/program.hpp"
 
 #include "app/farm/batch_script.hpp"
@@ -20,7 +21,7 @@ using session::FrameRange;
 using testing::AllOf;
 using testing::Contains;
 
-/// Every way in which up to nine of a sequence's frames may be missing.
+/// Tries every way in which up to nine frames of a sequence may be missing.
 TEST(FarmTasks, HaveEachMissingFrameOnce) {
   constexpr std::int64_t kFirst = -3, kStep = 4;
   for (std::uint32_t set = 0; set < 512; ++set) {
@@ -55,7 +56,7 @@ TEST(FarmTasks, HaveEachMissingFrameOnce) {
   }
 }
 
-/// n frames of f seconds after b to begin: n·f + b ≥ 60 and b ≤ n·f / 10, and n − 1 would not do.
+/// A task has n frames of f seconds and takes b seconds to begin: n is the smallest with n·f + b ≥ 60 and b ≤ n·f / 10.
 TEST(FarmTasks, AreLargeEnoughAndNoLarger) {
   for (const double begin : {0.0, 0.125, 1.0, 8.0, 59.0, 60.0, 64.0}) {
     for (const double frame : {0.0078125, 0.5, 1.0, 3.0, 60.0, 1000.0}) {

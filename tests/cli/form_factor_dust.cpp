@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Beauty where little or nothing of a round light is above the receiver's plane: `exact` and the default add up other
-// pieces, and agree within the rounding of sums of terms up to 1 (docs/radiance.md).
+// Tests beauty where little or nothing of a round light is above the receiver's plane: `exact` and the default method
+// sum different pieces, and agree within the rounding of sums of terms up to 1 (docs/radiance.md).
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -38,7 +38,7 @@ class FormFactorDust : public ProgramTest {
 
 constexpr const char* kDustLights[] = {
     R"("sphere": {"center": [-0.375, -0.25, 0], "radius": 0.25})",  // touches the floor's plane from below
-    R"("sphere": {"center": [-0.375, 0.25, 0], "radius": 0.25})",   // and from above
+    R"("sphere": {"center": [-0.375, 0.25, 0], "radius": 0.25})",   // touches it from above
     R"("sphere": {"center": [0.5, 0.125, 1.5], "radius": 0.5})",    // is cut by it
     R"("sphere": {"center": [-0.25, 4, -0.375], "radius": 0.5})",
     R"("sun": {"direction": [0, 2, -1], "angle": 90})",  // 18 degrees of its cone are above the horizon
@@ -66,7 +66,7 @@ TEST_F(FormFactorDust, IsBounded) {
 }
 
 /// Returns the form factor at p of a ball that nothing hides: 1/π of the integral of max(0, n · ω) over the cone of
-/// directions to it, ring by ring around its axis, each ring in 4096 parts. Nothing of the program's is used.
+/// directions to it, in rings around its axis with 4096 parts each. Uses none of the program's code.
 double arriving(const glm::dvec3& p, const glm::dvec3& n, const glm::dvec3& center, double radius) {
   constexpr int kRings = 1024, kParts = 4096;
   const glm::dvec3 to = center - p;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render` of what moves: which frames, which files, and that a frame of a sequence is the frame by itself.
+// Tests `render` of animated scenes: which frames and files it writes, and that a frame of a sequence equals the frame
+// rendered alone.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -57,12 +58,12 @@ TEST_F(Frames, OfASequenceAreThoseByThemselves) {
   EXPECT_EQ(different.size(), 3u) << "it moves";
 }
 
-/// Frame F is time F / fps: the camera is between 4 and 3 units above the floor, and the pixels next to the middle
-/// see the floor or the body, which is a unit above it.
+/// Frame F is at time F / fps. The camera is between 4 and 3 units above the floor; pixels next to the middle see the
+/// floor, or the body a unit above it.
 TEST_F(Frames, AreAtTheirTime) {
   ASSERT_EQ(render({"--frame", "5", "-o", path("f.##.exr")}).code, 0);
   const ExrFile image = read_exr(path("f.05.exr"));
-  const float z = image.floats.at("Z")[23];  // of a corner: the floor
+  const float z = image.floats.at("Z")[23];  // at a corner, which shows the floor
   EXPECT_FLOAT_EQ(z, 3.5f);
   ASSERT_EQ(render({"--frame", "5", "--fps", "20", "-o", path("g.exr")}).code, 0);
   EXPECT_FLOAT_EQ(read_exr(path("g.exr")).floats.at("Z")[23], 3.75f);
@@ -70,8 +71,8 @@ TEST_F(Frames, AreAtTheirTime) {
     EXPECT_EQ(render({"--frame", "5", "--fps", wrong, "-o", path("h.exr")}).code, 2) << wrong;
 }
 
-/// V of reproject=on depends on the frames before, of this run alone: its first frame, and the first after frames that
-/// another run made, are those by themselves. `compare` has the same frames.
+/// With reproject=on V depends on earlier frames of the same run only: the run's first frame, and the first one after
+/// frames made by another run, equal those rendered alone. `compare` renders the same frames.
 TEST_F(Frames, ReprojectedBeginWithARun) {
   const std::string method = "shadow-map:size=24:reproject=on";
   const std::vector<std::string> sequence = {"--frames", "1-3", "--method", method, "-o", path("s.exr")};
@@ -113,7 +114,7 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
                                              path("s.png"), "--exposure", "first", "--skip-existing"};
   ASSERT_EQ(render(sequence).code, 0);
   const std::string second = read("s.0002.exr"), third = read("s.0003.exr"), picture = read("s.0003.png");
-  write("s.0003.exr", "");  // somebody's placeholder, or what a full disk left
+  write("s.0003.exr", "");  // an empty placeholder, or what a full disk left
   const auto before = std::filesystem::last_write_time(path("s.0002.exr"));
   const Outcome again = render(sequence);
   ASSERT_EQ(again.code, 0) << again.err;
@@ -127,7 +128,7 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
   EXPECT_THAT(render(sequence).err, HasSubstr("all 3 pictures are there"));
 }
 
-/// A file that was cut off, or that something else wrote, is not there: it is named, and made again with the same
+/// A file that was cut off, or that another program wrote, counts as missing: it is named, and made again with the same
 /// bytes.
 TEST_F(Frames, ThatAreTornOrForeignAreMadeAgain) {
   const std::vector<std::string> sequence = {
@@ -149,13 +150,13 @@ TEST_F(Frames, ThatAreTornOrForeignAreMadeAgain) {
       const Outcome again = render(sequence);
       ASSERT_EQ(again.code, 0) << again.err;
       EXPECT_THAT(again.err, HasSubstr(name + " is cut off, or no file that this command wrote")) << text.size();
-      if (name.ends_with(".json")) continue;  // it has times
+      if (name.ends_with(".json")) continue;  // it contains times
       EXPECT_EQ(read(name), bytes) << name << ", where " << text.size() << " bytes stood, and exposed as the first is";
     }
   }
 }
 
-/// Moments may lie between frames: the camera is where it is half a frame later.
+/// Moments may lie between frames: here the camera is where it is half a frame later.
 TEST_F(Frames, MayBeMoments) {
   ASSERT_EQ(render({"--frame", "5.5", "-o", path("f.exr")}).code, 0);
   const ExrFile image = read_exr(path("f.exr"));
@@ -169,7 +170,7 @@ TEST_F(Frames, MayBeMoments) {
   EXPECT_THAT(files(), ElementsAre("f.exr", "scene.glb"));
 }
 
-/// `compare` looks at the frame that `render` renders.
+/// `compare` evaluates the same frame as `render`.
 TEST_F(Frames, OfComparisonsAreAtTheirTime) {
   const auto compare = [&](std::vector<std::string> more) {
     std::vector<std::string> arguments = {"compare", path("scene.glb"), "--size",    "12x8",        "--runs", "1",
@@ -217,7 +218,7 @@ TEST_F(Frames, ExposuresAreStops) {
     EXPECT_EQ(render({"--frame", "1", "-o", path("e.exr"), "--exposure", wrong}).code, 2) << wrong;
 }
 
-/// R G B A and V are means of a larger picture's blocks; everything else is of the pixel's centre.
+/// R G B A and V are means over blocks of a larger picture; everything else is taken at the pixel's centre.
 TEST_F(Frames, PixelSamplesAreMeans) {
   ASSERT_EQ(render({"--frame", "3", "-o", path("one.exr")}).code, 0);
   ASSERT_EQ(render({"--frame", "3", "-o", path("four.exr"), "--pixel-samples", "4", "--pixel-tolerance", "0"}).code, 0);
@@ -231,7 +232,7 @@ TEST_F(Frames, PixelSamplesAreMeans) {
   for (const auto& [name, values] : four.floats) {
     const bool is_mean =
         name == "R" || name == "G" || name == "B" || name == "A" || name == "V" || name.starts_with("Lamp");
-    if (!is_mean && !name.starts_with("Crypto")) {  // shares of all view samples
+    if (!is_mean && !name.starts_with("Crypto")) {  // mattes are shares of all view samples
       EXPECT_EQ(values, one.floats.at(name)) << name;
     }
     for (std::size_t i = 0; is_mean && i < values.size(); ++i) {
@@ -247,7 +248,7 @@ TEST_F(Frames, PixelSamplesAreMeans) {
   EXPECT_EQ(four.integers.at("id"), one.integers.at("id"));
 }
 
-/// A lamp that an animation hides stays a light, dark, and means over a shutter know lights by their names.
+/// A lamp that an animation hides stays a light, but dark; means over a shutter match lights by their names.
 TEST_F(Frames, OfALampThatIsHidden) {
   test::Gltf gltf;
   gltf.at("/nodes/0")["rotation"] = {-0.70710678, 0, 0, 0.70710678};
@@ -269,7 +270,7 @@ TEST_F(Frames, OfALampThatIsHidden) {
   EXPECT_EQ(greatest(hidden.floats.at("Lamp.R")), 0);
   for (std::size_t i = 0; i < shown.floats.at("B.R").size(); ++i)
     EXPECT_FLOAT_EQ(hidden.floats.at("B.R")[i], shown.floats.at("B.R")[i]);
-  // Half a frame and one and a half before and after the key.
+  // The moments are half a frame and one and a half frames before and after the key.
   const Outcome mean = render({"--frame", "10", "--motion-samples", "4", "--shutter", "4", "-o", path("m.exr")});
   ASSERT_EQ(mean.code, 0) << mean.err;
   const ExrFile blurred = read_exr(path("m.exr"));
@@ -292,7 +293,7 @@ TEST(PictureMean, KnowsLightsByTheirNames) {
   EXPECT_EQ(mean.take_beauty(asked), (Colors{{glm::vec3(4)}, {glm::vec3(1.5f)}, {glm::vec3(2)}, {glm::vec3(0)}}));
 }
 
-/// Two moments of a shutter that is open for 0.4 frames: 0.1 frames before and after.
+/// Two moments of a shutter that is open for 0.4 frames: 0.1 frames before and after the frame.
 TEST_F(Frames, MotionSamplesAreMeansOfMoments) {
   ASSERT_EQ(render({"--frame", "5", "-o", path("m.exr"), "--motion-samples", "2", "--shutter", "0.4"}).code, 0);
   ASSERT_EQ(render({"--frame", "5", "-o", path("now.exr")}).code, 0);
@@ -304,7 +305,8 @@ TEST_F(Frames, MotionSamplesAreMeansOfMoments) {
   EXPECT_NE(mean.floats.at("V"), now.floats.at("V"));
   for (const char* name : {"R", "V", "A", "Lamp.V"}) {
     for (std::size_t i = 0; i < mean.floats.at(name).size(); ++i) {
-      // The two times are computed in different orders, and may differ by a double's step; radiance goes up to 20.
+      // The two times are computed in different orders and may differ by one rounding of a double; radiance goes up to
+      // 20.
       EXPECT_NEAR(mean.floats.at(name)[i], (a.floats.at(name)[i] + b.floats.at(name)[i]) / 2, 2e-5) << name << i;
     }
   }
@@ -339,7 +341,7 @@ TEST_F(Frames, OfAllCameras) {
   EXPECT_EQ(read("one.exr"), read("o.B.2.0003.exr"));
 }
 
-/// A file a frame, of meshes without light or camera: the studio is that of the file with the lowest number.
+/// One file per frame, of meshes without light or camera: the studio is that of the file with the lowest number.
 TEST_F(Frames, MayBeAFileEach) {
   for (int frame = 2; frame <= 5; ++frame) {
     write(
@@ -354,7 +356,7 @@ TEST_F(Frames, MayBeAFileEach) {
   ASSERT_EQ(frames({"--frames", "2-5", "-o", path("s.####.exr")}).code, 0)
       << frames({"--frames", "2-5", "-o", path("s.####.exr")}).err;
   const ExrFile first = read_exr(path("s.0002.exr")), last = read_exr(path("s.0005.exr"));
-  std::size_t same = 0;  // where both see the ground, which the studio's floor is at the height of: nothing else moves
+  std::size_t same = 0;  // pixels that show the ground, at the studio floor's height, in both: the studio does not move
   for (std::size_t i = 0; i < first.floats.at("P.Y").size(); ++i) {
     const auto on_ground = [i](const ExrFile& exr) { return std::abs(exr.floats.at("P.Y")[i]) < 1e-5F; };
     if (first.floats.at("A")[i] == 0 || !on_ground(first) || !on_ground(last)) continue;
@@ -365,7 +367,7 @@ TEST_F(Frames, MayBeAFileEach) {
   EXPECT_NE(first.floats.at("V"), last.floats.at("V")) << "it moves";
   ASSERT_EQ(frames({"--frame", "5", "-o", path("alone.exr")}).code, 0);
   EXPECT_EQ(read("alone.exr"), read("s.0005.exr"));
-  // The first is the picture of its file by itself.
+  // The first frame equals the picture of its file rendered alone.
   ASSERT_EQ(run({"render", path("m.002.obj"), "--size", "24x16", "-o", path("still.exr")}).code, 0);
   EXPECT_EQ(read_exr(path("still.exr")).floats.at("V"), first.floats.at("V"));
   EXPECT_THAT(frames({"-o", path("a.exr")}).err,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Commands that users of other command-line tools type first: help, version, one method, completions, manual pages,
-// threads.
+// Tests commands that users of other command-line tools type first: help, version, one method, completions, manual
+// pages, threads.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -76,7 +76,7 @@ TEST_F(Habit, EveryMethodHasThePageThatItNames) {
   }
 }
 
-/// The scripts are run by their own shell where it is installed.
+/// Each shell runs its own script, if it is installed.
 TEST_F(Habit, ShellsCompleteCommandsOptionsAndMethods) {
   const Outcome script = run({"completion", "bash"});
   ASSERT_EQ(script.code, 0) << script.err;
@@ -113,7 +113,7 @@ TEST_F(Habit, ManualPagesSayWhatHelpSays) {
                               HasSubstr("\\fB\\-\\-light\\-samples\\fR \\fIN|LxB\\fR"), HasSubstr(".SH EXIT STATUS")));
   EXPECT_THAT(run({"man"}).out, AllOf(HasSubstr(".SH COMMANDS"), HasSubstr("\\fBinspect\\fR"), HasSubstr("-V")));
   for (const char* const command : {"render", "compare", "inspect", "bake"}) {
-    // A line that begins with a point is a request: only those of man(7).
+    // A line that begins with a dot is a request: only requests of man(7) may occur.
     const std::string text = run({"man", command}).out;
     for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
       if (text[at] == '.') {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines of help end where the terminal does.
+// Tests that lines of help end at the terminal's width.
 #include "app/wrapped_lines.hpp"
 #include "tests/cli/program.hpp"
 

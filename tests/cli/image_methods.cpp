@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of image-based methods that scripts give, by their names on the command line: each is taken and does what
-// it says. One comparison of all of them, judged by what metrics.json says.
+// Tests the options of image-based methods by their names on the command line: each is accepted and has its effect. One
+// comparison runs them all, and metrics.json is checked.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -196,8 +196,8 @@ TEST_F(ImageMethods, OptionsOfFiltersListsAndManyMapsDoWhatTheySay) {
   }
 }
 
-// Pixels on what casts shadows see their light above the horizon alone, which is the paper's limit: a user who renders
-// with it is told, in words and in numbers, unless another method answers there.
+// On casters soft-shadow-map computes only the part of the light above the horizon, which is the paper's limit: the
+// user is told so, in messages and in files, unless another method computes these pixels.
 TEST_F(ImageMethods, SoftShadowMapSaysWhereItHasNoShadows) {
   const std::string scene = write("scene.json", kScene).string();
   for (const bool answered : {false, true}) {
@@ -216,8 +216,8 @@ TEST_F(ImageMethods, SoftShadowMapSaysWhereItHasNoShadows) {
   EXPECT_THAT(found_["soft-shadow-map:self=backproject"].at("warnings"), testing::IsEmpty());
 }
 
-// A large light whose plane cuts the floor: five maps of a hemicube, each kernel nearly all of one. No part of a
-// pyramid over them may be missing, for drivers that end loops, and what is seen beside the light may not be looked at.
+// A large light whose plane cuts the floor: the five maps of a hemicube, with kernels that nearly fill one. The pyramid
+// over them must be complete, although some drivers cut off loops, and texels beside the light must not be visited.
 TEST_F(ImageMethods, ATexturedLightNearTheFloorTakesNoLongerThanItsOutlines) {
   const Outcome outcome =
       run({"render", std::string(PENUMBRA_SCENES) + "/textured-light.json", "-o", path("out.exr"), "--size", "12x12",
@@ -228,8 +228,8 @@ TEST_F(ImageMethods, ATexturedLightNearTheFloorTakesNoLongerThanItsOutlines) {
   EXPECT_LT(counters.at("cells").get<double>(), 1e-3 * counters.at("kernelCells").get<double>());
 }
 
-// Where a device cannot filter maps of the default size, options in files are those that were used, under one light and
-// under two, and texels are as wide as those of a size that is given.
+// If the device cannot filter maps of the default size, the options in files are those actually used, with one light
+// and with two, and texels are as wide as those of an explicit size.
 TEST_F(ImageMethods, OptionsHaveTheSizeOfMapsThatTheDeviceReduced) {
   const std::string entry = "vssm:moments=csm:filter=n-buffer";
   json scene = json::parse(kScene);
@@ -241,7 +241,7 @@ TEST_F(ImageMethods, OptionsHaveTheSizeOfMapsThatTheDeviceReduced) {
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const json stats = json::parse(read("stats.json"));
   const json& options = stats.at("options");
-  if (!stats.at("counters").contains("reducedMaps")) {  // large buffers
+  if (!stats.at("counters").contains("reducedMaps")) {  // the device has large buffers
     EXPECT_FALSE(options.contains("size"));
     return;
   }

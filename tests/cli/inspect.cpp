@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// inspect: what it says of a mesh whose defects are known, in table, JSON and files, and what it refuses.
+// Tests inspect: what it reports about a mesh with known defects, in table, JSON and files, and what it refuses.
 #include "tests/cli/program.hpp"
 
 #include "base/png.hpp"
@@ -75,7 +75,7 @@ TEST_F(Inspect, JsonHasItsKeys) {
     for (const auto& [key, value] : known) EXPECT_EQ(object.at(key), value) << key;
     EXPECT_EQ(object.at("bounds"), json::parse("[[0, 0, 0], [1, 1, 1]]"));
     EXPECT_EQ(object.at("verdicts").at("view-sample"), "exact");
-    // The pyramid over the missing triangle, seen from the bounds' centre, is missing: a twelfth of the volume.
+    // The pyramid from the bounds' centre over the missing triangle is missing: a twelfth of the volume.
     EXPECT_DOUBLE_EQ(object.at("volume").get<double>(), 11.0 / 12);
     const json& edges = object.at("lists").at("boundaryEdges");
     ASSERT_EQ(edges.size(), 3u);
@@ -180,7 +180,7 @@ TEST_F(Inspect, RepairsAndTheResultReadsBack) {
   }
 }
 
-/// Repairs that no reader takes are not written, and neither are those that leave no triangle.
+/// Repairs that no reader would accept are not written, nor those that leave no triangle.
 TEST_F(Inspect, WritesNoRepairThatIsNoMesh) {
 #ifndef PENUMBRA_WITH_CGAL_GPL
   GTEST_SKIP() << "penumbra-repair is not built";
@@ -196,7 +196,7 @@ TEST_F(Inspect, WritesNoRepairThatIsNoMesh) {
   }
 }
 
-/// Two cubes that share an edge: by indices a repair takes them apart, by position they stay joined.
+/// Two cubes that share an edge: by indices a repair separates them, by position they stay joined.
 TEST_F(Inspect, WhatARepairSaysOfItsFileIsWhatInspectSaysOfIt) {
 #ifndef PENUMBRA_WITH_CGAL_GPL
   GTEST_SKIP() << "penumbra-repair is not built";
@@ -282,7 +282,8 @@ TEST_F(Inspect, NamesOfFilesStayOnTheirRow) {
   EXPECT_THAT(run({"inspect", path("odd/a\nb\tc.off")}).out, testing::StartsWith(path("odd/a\\nb\\tc.off") + "\n"));
 }
 
-/// Grey surface, white around it; the three edges of the missing triangle red in one view or both.
+/// The surface is grey, its surroundings are white; the three edges of the missing triangle are red in one view or
+/// both.
 TEST_F(Inspect, ThePictureShowsDefectsInTheirColours) {
   ASSERT_EQ(run({"inspect", cube(), "--png", path("cube.png")}).code, 0);
   const std::string bytes = read("cube.png");
@@ -325,7 +326,7 @@ TEST_F(Inspect, NeverOverwritesItsInput) {
       EXPECT_EQ(outcome.code, 2) << option << ' ' << name << ": " << outcome.err;
     }
   }
-  // A scene's meshes are its input, too.
+  // A scene's meshes are inputs, too.
   write("scene.json", scene_text_with("/meshes/1", R"({"name": "m", "file": "cube.ply"})"));
   const Outcome outcome = run({"inspect", path("scene.json"), "--export-defects", mesh});
   EXPECT_EQ(outcome.code, 2);

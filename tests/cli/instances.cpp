@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh with instances is the scene in which the mesh is written once for each of them, to the last bit.
+// Tests that a mesh with instances gives the same as the scene in which it is written once per instance, to the last
+// bit.
 #include "tests/cli/program.hpp"
 #include "tests/unit/import/gltf_file.hpp"
 
@@ -53,7 +54,8 @@ class Instances : public ProgramTest {
     write("scene.json", whole.dump());
   }
 
-  /// Renders the scene with copies and without. Masks are compared, too, where a method is named.
+  /// Renders the scene with copies and without, and expects the same picture. Masks are compared, too, if a method is
+  /// named.
   void expect_same_picture(const std::vector<std::string>& direction, bool masks = true) {
     SCOPED_TRACE(testing::PrintToString(direction));
     const bool has_bits = masks && direction.size() >= 2 && direction[0] == "--method";
@@ -88,14 +90,14 @@ class Instances : public ProgramTest {
     }
   }
 
-  /// Triangles of the last picture of expect_same_picture(), and of its largest part where nothing was copied.
+  /// Triangles of the last picture of expect_same_picture(), and of its largest part if nothing was copied.
   [[nodiscard]] std::uint64_t triangles() const {
     return json::parse(read("shared.stats.json")).at("triangles").get<std::uint64_t>();
   }
   [[nodiscard]] std::uint64_t triangles_of_part() const {
     return json::parse(read("shared.stats.json")).at("counters").at("trianglesOfLargestPart").get<std::uint64_t>();
   }
-  /// Bytes of the floats of the scene, or of the part that the last picture looked at.
+  /// Returns the bytes of the floats of the scene, or of the part that the last picture used.
   [[nodiscard]] std::uint64_t bytes_of_scene(const std::string& use) const {
     return json::parse(read(use + ".stats.json")).at("memory").at("scene").get<std::uint64_t>();
   }
@@ -156,7 +158,7 @@ TEST_F(Instances, GiveTheSamePictureWithoutCopies) {
   expect_same_picture({"--light", "bulb", "--camera", "0.2,0.4,0.3:1,0.2,-1"});
 }
 
-/// So are those through a lens, whose points see past what hides from its middle.
+/// Pictures through a lens are the same, too; points of the lens see past what hides from its middle.
 TEST_F(Instances, GiveTheSamePictureThroughALens) {
   write_grove(R"([
     {"name": "area", "rectangle": {"center": [0.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.3]}},
@@ -172,10 +174,10 @@ TEST_F(Instances, GiveTheSamePictureThroughALens) {
   expect_same_picture(with({"--light", "area", "--method", "view-sample"}), false);
 }
 
-/// So are those of several moments, each of which has instances of its own.
+/// Pictures of several moments are the same, too; each moment has separate instances.
 TEST_F(Instances, GiveTheSamePictureInMotion) {
   test::Gltf gltf;
-  gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // its front down
+  gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // faces down
   gltf.at("/nodes/0") = {{"name", "Body"}, {"mesh", 0}, {"translation", {0, 1, 0}}};
   gltf.at("/nodes/2") = {
       {"name", "Camera"}, {"camera", 0}, {"translation", {0, 4, 0}}, {"rotation", {-0.70710678, 0, 0, 0.70710678}}};
@@ -211,7 +213,7 @@ TEST_F(Instances, GiveTheSamePictureInMotion) {
   EXPECT_THAT(refused.err, HasSubstr("shadow-map takes one view sample a pixel"));
 }
 
-/// So are those of light samples of a dome, of which every direction needs a blocker; areas need all triangles.
+/// Pictures with a dome's light samples are the same, too; every direction needs a blocker. Areas need all triangles.
 TEST_F(Instances, GiveTheSamePictureUnderADome) {
   write_grove(R"([
     {"name": "sky", "dome": {"half": true}, "radiance": [0.5, 0.7, 1]},
@@ -226,7 +228,7 @@ TEST_F(Instances, GiveTheSamePictureUnderADome) {
   EXPECT_EQ(triangles_of_part(), triangles());
 }
 
-/// A dome that is `sampled` needs no option for that, and the sun beside it keeps its exact area.
+/// A dome that is `sampled` needs no option for light samples, and the sun next to it keeps its exact area.
 TEST_F(Instances, GiveTheSamePictureUnderASampledDome) {
   write_grove(R"([
     {"name": "sky", "dome": {"half": true, "sampled": true}, "radiance": [0.5, 0.7, 1]},
@@ -242,8 +244,8 @@ TEST_F(Instances, GiveTheSamePictureUnderASampledDome) {
   EXPECT_EQ(triangles_of_part(), triangles()) << "the other dome's areas are exact";
 }
 
-/// More triangles than are copied without need: a sampled dome needs none, and one that is added is sampled, which is
-/// said in one line.
+/// A scene with more triangles than are copied unless necessary: under a sampled dome no copies are needed, and a dome
+/// that is added is sampled, as one line of output says.
 TEST_F(Instances, OfAForestStayUnderASampledDome) {
   json trees = tree();
   trees["shape"]["segments"] = 32;
@@ -282,8 +284,8 @@ TEST_F(Instances, OfAForestStayUnderASampledDome) {
   EXPECT_THAT(nothing, testing::Not(HasSubstr("`sampled`")));
 }
 
-/// Maps from the light's centre get all triangles, one instance after another: their windows, depths and pictures are
-/// those of the scene of copies.
+/// Maps from the light's centre receive all triangles, one instance after another: their windows, depths and pictures
+/// are those of the scene with copies.
 TEST_F(Instances, GiveTheSamePictureByMaps) {
   write_grove(R"([
     {"name": "area", "rectangle": {"center": [0.5, 3, 1], "halfU": [0.4, 0, 0], "halfV": [0, 0, 0.3]}},
@@ -311,10 +313,10 @@ TEST_F(Instances, AreCopiedForMapsThatLookTwice) {
               HasSubstr("shadow-map looks at more"));
 }
 
-/// Nodes that share a mesh, and EXT_mesh_gpu_instancing, are what the same file says in world space, copy by copy.
+/// Nodes that share a mesh, and EXT_mesh_gpu_instancing, give the same as a file with every copy in world space.
 TEST_F(Instances, OfGltfAreTheMeshOnceForEach) {
   test::Gltf gltf;
-  gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // its front down
+  gltf.at("/nodes/1")["rotation"] = {1, 0, 0, 0};  // faces down
   gltf.at("/meshes/0/primitives/0/attributes")["NORMAL"] =
       gltf.add_floats("VEC3", {0, 0, 1, 0.6F, 0, 0.8F, 0, 0.3F, 1});
   gltf.at("/nodes/0") = {{"name", "Body"}, {"mesh", 0}, {"translation", {-1, 0.25, 0.5}}, {"scale", {1.3, 2, 1}}};
@@ -383,7 +385,7 @@ TEST_F(Instances, StayInstancesWhenTheyAreConverted) {
   expect_same(shown("again.json"), first);
   expect_same(shown("copies.json"), first);
 
-  // glTF has positions in float32, so that the first file may round; what is read from it is written again as it is.
+  // glTF has positions in float32, so the first file may round; what is read from it is written unchanged.
   convert("scene.json", "scene.glb", "auto");
   convert("scene.glb", "again.glb", "shared");
   const auto document = [&](const std::string& file) {
@@ -402,7 +404,7 @@ TEST_F(Instances, StayInstancesWhenTheyAreConverted) {
   EXPECT_EQ(glb.integers.at("id"), first.integers.at("id"));
   const ExrFile again_glb = shown("again.glb");
   EXPECT_EQ(again_glb.integers.at("id"), glb.integers.at("id"));
-  // Nodes are objects of their own: JSON merges them where it is asked to.
+  // Nodes are separate objects; JSON merges them if asked to.
   convert("again.glb", "merged.json", "shared");
   EXPECT_EQ(json::parse(read("merged.json")).at("meshes").at(1).at("instances").size(), 9U);
   convert("again.glb", "apart.json", "auto");
@@ -414,7 +416,7 @@ TEST_F(Instances, StayInstancesWhenTheyAreConverted) {
 
 using InstancesFull = Instances;
 
-/// Ten million triangles, which nobody must ask to leave be.
+/// Ten million triangles: instances are kept without any option.
 TEST_F(InstancesFull, GiveTheSamePictureOfAForest) {
   json trees = tree();
   trees["shape"]["segments"] = 32;
@@ -470,7 +472,7 @@ TEST_F(Instances, StandOnAFit) {
   EXPECT_EQ(report.at("components"), 2);
 }
 
-/// A studio stands around the scene at rest, whose instances are not there beside those of the frame.
+/// A studio is put around the scene at rest, whose instances must not appear in addition to the frame's.
 TEST_F(Instances, OfAnAnimationInAStudioAreThereOnce) {
   test::Gltf gltf;
   gltf.at("/nodes").push_back({{"name", "Other"}, {"mesh", 0}, {"translation", {2, 0, 0}}});

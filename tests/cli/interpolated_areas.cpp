@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Areas at several view samples a pixel, of which most are interpolated: against functions that are known, and pictures
-// against those whose every view sample was evaluated.
+// Tests areas at several view samples per pixel, most of which are interpolated: against known functions, and pictures
+// against those with every view sample evaluated.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -20,7 +20,8 @@ namespace {
 using testing::HasSubstr;
 using visibility::ViewSamples;
 
-/// A method whose V is a function of p, and whose form factor is half of V; it counts what it is asked.
+/// A method whose V is a function of p and whose form factor is half of V; it counts the view samples that it
+/// evaluates.
 class Function final : public visibility::Method {
  public:
   explicit Function(std::function<double(const glm::vec3&)> function) : function_(std::move(function)) {
@@ -55,8 +56,8 @@ class Function final : public visibility::Method {
   std::size_t asked_ = 0;
 };
 
-/// Two surfaces that face the viewer: the one on the left at height 0; that on the right, from a column on, lower by
-/// `gap` pixels. p is in pixels.
+/// Two surfaces that face the viewer: the left one at height 0, the right one, from a column on, lower by `gap` pixels.
+/// p is in pixels.
 class InterpolatedAreas : public testing::Test {
  protected:
   static constexpr std::uint32_t kSide = 4, kWidth = 8 * kSide, kHeight = 6 * kSide;
@@ -83,7 +84,7 @@ class InterpolatedAreas : public testing::Test {
     samples_.depth.assign(size, 1);
     samples_.facing.assign(size, 1);
   }
-  /// The largest difference from the function; the counter and `asked_` are of this call.
+  /// Returns the largest difference from the function; the counter and `asked_` are those of this call.
   double largest_error(const std::function<double(const glm::vec3&)>& function) {
     Function method(function);
     session::InterpolatedAreas areas(method, scene_, kSide, kTolerance);
@@ -112,10 +113,10 @@ class InterpolatedAreas : public testing::Test {
     return error;
   }
 
-  /// View samples of the picture; those in the middles of pixels; those between, in cells with four corners.
+  /// Numbers of view samples: all; those in the middles of pixels; those between them, in cells with four corners.
   static constexpr std::size_t kAll = std::size_t{kWidth} * kHeight, kCorners = kAll / (kSide * kSide),
                                kBetween = std::size_t{kWidth - kSide} * (kHeight - kSide) * 15 / 16,
-                               kLeast = kAll - kBetween;  ///< that must be asked
+                               kLeast = kAll - kBetween;  ///< those that must be evaluated
 
   visibility::SceneFloats scene_;
   ViewSamples samples_;
@@ -135,7 +136,7 @@ TEST_F(InterpolatedAreas, LookAtEachViewSampleNearAStep) {
   EXPECT_LT(asked_, kAll * 8 / 10);
 }
 
-/// D of c x² is 2c, and the error of bilinear interpolation at most a quarter of c.
+/// For c x² the second difference D is 2c, and bilinear interpolation is off by at most a quarter of c.
 TEST_F(InterpolatedAreas, ErrByNoMoreThanTheTolerance) {
   const auto parabola = [](double c) {
     return [c](const glm::vec3& p) { return 0.5 + c * (double{p.x} - 4) * (double{p.x} - 4) / 16; };
@@ -159,7 +160,7 @@ TEST_F(InterpolatedAreas, AreContinuedToTheEdgeOfASurfaceUnlessAnotherIsNear) {
   set_gap(kColumn, 0.5);
   EXPECT_LT(largest_error(both), 1e-6);
   EXPECT_GT(asked_, kLeast + std::size_t{kHeight} * 2);
-  // A shadow that no corner sees.
+  // A shadow that contains no corner.
   const auto contact = [&](const glm::vec3& p) { return p.z == 0 && p.x > (kColumn - 1.5f) / kSide ? 0.0 : both(p); };
   EXPECT_LT(largest_error(contact), 1e-6);
 }
@@ -172,9 +173,9 @@ TEST_F(InterpolatedAreas, AreOneWhereThereIsNothing) {
 
 using InterpolatedPictures = ProgramTest;
 
-/// Scenes with contacts, thin penumbras and smooth meshes, 16 view samples a pixel, are held against pictures with all
-/// view samples evaluated. The error of a pixel is a mean of errors, whose estimates are at most the tolerance:
-/// measured, the mean is a quarter of it, and a kink between corners costs a pixel 0.03.
+/// Scenes with contacts, thin penumbrae and smooth meshes, at 16 view samples per pixel, are compared with pictures
+/// whose every view sample is evaluated. The error of a pixel is a mean of errors, whose estimates are at most the
+/// tolerance: measured, the mean is a quarter of it, and a kink between corners costs a pixel 0.03.
 TEST_F(InterpolatedPictures, DifferLittleFromThoseWhoseEveryViewSampleIsEvaluated) {
   for (const char* scene : {"contact", "room"}) {
     SCOPED_TRACE(scene);

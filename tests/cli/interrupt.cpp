@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C at any moment: exit code 130, soon, and nothing left behind.
+// Tests Ctrl-C at any moment: exit code 130 soon after it, and nothing left behind.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -15,7 +15,7 @@ class Interrupt : public ProgramTest, public testing::WithParamInterface<double>
 
 TEST_P(Interrupt, EndsWith130AndLeavesNoFile) {
   const std::string scene = tiny_scene();
-  // Enough work for minutes: the signal always comes while it is being done.
+  // Enough work for minutes, so that the signal always arrives during it.
   const auto start = std::chrono::steady_clock::now();
   const Outcome outcome =
       run_program({.arguments = {"render", scene, "-o", path("out.exr"), "--bits", path("out.bits"), "--method",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --light-cutoff: which lights are left out of which pixels, against the unshadowed light of the same scene when
+// Tests --light-cutoff: which lights are left out of which pixels, compared with the light of the same scene when
 // nothing in it casts a shadow.
 #include "tests/cli/program.hpp"
 
@@ -118,7 +118,7 @@ TEST_F(LightCutoff, LeavesOutWhatIsFaintAlone) {
   }
 }
 
-/// Each view sample decides by itself.
+/// The cutoff is decided for each view sample.
 TEST_F(LightCutoff, HoldsForEachViewSampleOfAPixel) {
   const std::vector<std::string> cut = {"--light-cutoff", "0.05"};
   std::vector<std::string> several = cut, large = cut;
@@ -135,7 +135,7 @@ TEST_F(LightCutoff, HoldsForEachViewSampleOfAPixel) {
       for (const std::size_t at : {first, first + 1, first + 64, first + 65})
         sum += double{fine.floats.at(channel)[at]} / 4;
       ASSERT_NEAR(whole.floats.at(channel)[i], sum, 1e-5 * std::max(sum, 1.0)) << channel << i;
-      // V of a lamp is extrapolated where the lamp begins to be left out; it is faint there.
+      // Where a lamp begins to be left out its V is extrapolated; the lamp is faint there.
       if (channel[0] == 'R') {
         ASSERT_NEAR(interpolated.floats.at(channel)[i], sum, 2e-3) << channel << i;
       }

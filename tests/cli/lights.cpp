@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinds of lights from the scene's file to the picture, and lights that are linked to meshes.
+// Tests kinds of lights from the scene file to the picture, and lights that are linked to meshes.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -25,7 +25,7 @@ constexpr const char* kLowSun = R"("sun": {"direction": [0.2, -1, 0.1], "angle":
 
 class LightKinds : public ProgramTest {
  protected:
-  /// A floor, a board over it and a shelf beside that, with these lights.
+  /// A floor, a board over it and a shelf next to the board, under these lights.
   std::string scene_with(const std::string& lights, const std::string& of_board = "",
                          const std::string& of_floor = "") const {
     const std::string text = R"({"format": "penumbra-scene/1", "size": [48, 32],
@@ -101,7 +101,7 @@ TEST_F(LightKinds, WhatCannotBeDoneIsRefusedWithWhatCan) {
   EXPECT_EQ(render({"--method", "raytrace", "--lamp-radius", "0"}).code, 2);
 }
 
-/// The shipped scene of seven kinds: each light by itself, its area without being asked for.
+/// The shipped scene with seven kinds: each light alone gives its exact area without being asked.
 TEST_F(LightKinds, ShippedLightsHaveExactAreas) {
   const std::string file = PENUMBRA_SCENES "/lights.json";
   const json scene = json::parse(std::ifstream(file));
@@ -186,7 +186,7 @@ TEST_F(LightKinds, AMeshIsLitByItsLightsAlone) {
   }
 }
 
-/// Lamps keep their sizes and units through glTF and back.
+/// Lamps keep their sizes and units when converted to glTF and back.
 TEST_F(LightKinds, LampsGoThroughGltf) {
   const auto scene =
       scene_with(R"({"name": "sun", "sun": {"direction": [0.2, -1, 0.1], "angle": 20}, "irradiance": [3, 2, 1]},

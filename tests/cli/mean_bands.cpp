@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of several view samples a pixel that are evaluated in bands of rows: the same bits as evaluated at once.
+// Tests that pictures with several view samples per pixel are the same bits whether evaluated in bands of rows or at
+// once.
 #include "engines/vectors/scan_conversion.hpp"
 #include "session/machine.hpp"
 #include "session/options.hpp"
@@ -54,7 +55,7 @@ Rendered rendered(const session::RunOptions& run, session::Frame frame, std::uin
 
 void expect_same_in_bands(const session::RunOptions& run, const session::Frame& frame) {
   const auto [whole, left_out_of_whole] = rendered(run, frame, std::numeric_limits<std::uint64_t>::max());
-  // 40 times 16 view samples in a row of pixels, 20 rows of these: four bands of 17 or 18 rows.
+  // A row of pixels has 40 times 16 view samples; room for 20 rows gives four bands of 17 or 18 rows.
   const auto [bands, left_out_of_bands] = rendered(run, frame, 40 * 16 * 20);
   EXPECT_EQ(bands.alpha, whole.alpha);
   EXPECT_EQ(bands.visibility, whole.visibility);

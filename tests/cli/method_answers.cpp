@@ -19,7 +19,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-/// Answers V = 0.5 everywhere, except for one value at one view sample.
+/// Gives V = 0.5 everywhere, except for one value at one view sample.
 class OneWrong final : public visibility::Method {
  public:
   OneWrong(float wrong, visibility::Output output, const glm::dvec3& form_factor)

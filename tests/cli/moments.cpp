@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render --moment`: files of a scene at moments of an open shutter.
+// Tests `render --moment`: files of a scene at moments of an open shutter.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -40,7 +40,7 @@ class Moments : public ProgramTest {
   }
 };
 
-/// The mean over the files, of which one may be given twice; positions are those of the scene.
+/// The picture is the mean over the files, one of which may be given twice; positions are those of the scene.
 TEST_F(Moments, InFilesAreTheirMean) {
   write_moved("now.json", 0, 0);
   write_moved("a.json", 0.5, 0);
@@ -57,7 +57,7 @@ TEST_F(Moments, InFilesAreTheirMean) {
     for (const char* channel : {"R", "G", "B", "A", "V", "key.R", "key.V"}) {
       for (std::size_t i = 0; i < mean.floats.at(channel).size(); ++i) {
         const float one = a.floats.at(channel)[i], other = b.floats.at(channel)[i];
-        // Sums are float32 of values up to 10.
+        // Sums of values up to 10 are rounded to float32.
         ASSERT_NEAR(mean.floats.at(channel)[i], (2 * double{one} + double{other}) / 3, 1e-5) << channel << " " << i;
         moving += one != other ? 1 : 0;
       }
@@ -66,8 +66,8 @@ TEST_F(Moments, InFilesAreTheirMean) {
   }
 }
 
-/// The box around all vertices is another one at each moment: the scene's own middle is the origin of all, so what
-/// stands still has the same scene floats at all of them.
+/// The box around all vertices differs between moments. The origin of all moments is the scene's own middle, so that
+/// what stands still has the same floats in all of them.
 TEST_F(Moments, HaveOneOrigin) {
   write_moved("now.json", 0, 0);
   for (int i = 0; i < 3; ++i) write_moved(fmt::format("{}.json", i), 0.125 * i, 0.125 * i);

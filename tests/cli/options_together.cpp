@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options together: a covering array of all options of `render` and `compare`, and of all methods with their own
-// options. Other tests try each option alone; here any two (quick) or three (full) of them meet. Of the quick ones two
-// options of one method, or one of them and one of the command, meet in `compare` (three of four such pairs);
-// `render` tries each method with each option of the command, and each value of a method's options once. Options of two
-// methods meet in the full ones. The program itself is asked what there is, so a new method or option is tried without
-// a change here.
+// Tests options in combination: a covering array of all options of `render` and `compare`, and of all methods with
+// their own options. Other tests try each option alone; here any two (quick tests) or three (full tests) are combined.
+// In the quick tests `compare` combines two options of one method, or one of them and one of the command (three of four
+// such pairs); `render` tries each method with each option of the command, and each value of a method's options once.
+// Options of two methods are combined in the full tests only. The program itself lists its methods and options, so that
+// a new one is tried without a change here.
 
 #include "tests/cli/options_together.hpp"
 
@@ -31,10 +31,10 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::ThrowsMessage;
 
-// Tests that share the rows, so that processes run them side by side (SHARDS in cli.cmake). Each process finds the rows
-// once.
+// The rows are divided among this many tests, so that processes run them in parallel (SHARDS in cli.cmake). Each
+// process computes the rows once.
 constexpr std::size_t kParts = 8, kCompareParts = 4;
-// Three of four pairs meet in so many rows.
+// This many rows contain three of four pairs.
 constexpr std::size_t kQuickCompareRows = 12;
 const char* const kOn = "on";
 
@@ -42,7 +42,7 @@ class OptionsTogether : public ProgramTest {
  protected:
   OptionsTogether() : table_(json::parse(run({"methods", "--json"}).out).at("methods")) {}
 
-  /// Options that both commands have.
+  /// Adds options that both commands have.
   void add_common_factors() {
     Factor scene{"scene", {}};
     for (const LitScene& one : scenes_) scene.values.push_back(one.name);
@@ -56,8 +56,7 @@ class OptionsTogether : public ProgramTest {
     for (const char* flag : {"bits", "png", "stats", "verbose"}) factors_.push_back({flag, {"", kOn}});
   }
 
-  /// `group_of` says in which group a factor of this name is (Factor::group), `default_by_name` what values_to_try
-  /// does.
+  /// `group_of` gives the group of a factor (Factor::group); `default_by_name` is passed to values_to_try.
   void add_options_of(const json& method, std::optional<std::pair<std::size_t, std::size_t>> only_if,
                       const std::function<std::string(const std::string& factor)>& group_of, bool default_by_name) {
     for (const json& option : method.at("options")) {
@@ -70,12 +69,12 @@ class OptionsTogether : public ProgramTest {
     return *std::ranges::find(scenes_, row["scene"], &LitScene::name);
   }
 
-  /// Returns whether a method can do any of the scenes; methods of domes alone can do none.
+  /// Returns whether a method can render any of the scenes; methods for domes only can render none.
   [[nodiscard]] bool does_some_scene(const json& method) const {
     return std::ranges::any_of(scenes_, [&](const LitScene& scene) { return table_.can_do(method, scene, "rows"); });
   }
 
-  /// All lights' names, the second one first.
+  /// Returns all lights' names, the second one first.
   [[nodiscard]] std::vector<std::string> lights_from_second(const LitScene& scene) const {
     std::vector<std::string> names;
     const json whole = json::parse(read(scene.name + ".json"));
@@ -118,8 +117,8 @@ class OptionsTogether : public ProgramTest {
     for (const std::string& name : files()) EXPECT_THAT(name, Not(HasSubstr(".part"))) << "left behind";
   }
 
-  /// Returns the covering array of the factors, of `most` rows at most. Found once a process in `found`, by strength,
-  /// because finding it takes seconds.
+  /// Returns the covering array of the factors, with `most` rows at most. It is kept in `found`, by strength, because
+  /// computing it takes seconds.
   const std::vector<Choices>& rows_of(std::map<std::size_t, CoveringArray>& found, std::size_t strength,
                                       const Allowed& allowed, std::size_t most = SIZE_MAX) {
     if (!found.contains(strength)) found.emplace(strength, covering_array(factors_, strength, allowed, most));
@@ -146,7 +145,7 @@ class RenderTogether : public OptionsTogether, public testing::WithParamInterfac
     scenes_ = write_lit_scenes(folder_, many);
     add_common_factors();
     if (strength == 2) {
-      for (Factor& factor : factors_) factor.group = "command";  // met by methods, not by methods' options
+      for (Factor& factor : factors_) factor.group = "command";  // combined with methods, but not with methods' options
     }
     Factor method{"method", {""}};
     std::vector<json> methods;
@@ -236,9 +235,9 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
     }
     const Allowed allowed = [&](const Choices& choices) { return can_be(Row(factors_, choices)); };
     static std::map<std::size_t, CoveringArray> found;
-    // The full tests run as many rows as it takes.
+    // The full tests use all rows.
     const std::vector<Choices>& rows = rows_of(found, strength, allowed, strength == 2 ? kQuickCompareRows : SIZE_MAX);
-    // A method need not be in a row that tells nothing new of it.
+    // A method is left out of a row that contains nothing new for it.
     const std::vector<std::set<std::string>> news = groups_with_news(factors_, strength, rows);
     for (std::size_t i = GetParam(); i < rows.size(); i += kCompareParts) {
       const Row row(factors_, rows[i]);
@@ -254,7 +253,7 @@ class CompareTogether : public OptionsTogether, public testing::WithParamInterfa
   }
 
  private:
-  /// An option of a method that cannot do the scene is left open.
+  /// Options of a method that cannot render the scene stay open.
   [[nodiscard]] bool can_be(const Row& row) const {
     if (!row["bits"].empty() && row.has("scene") && scene_of(row).lights.front() == "sphere") return false;
     for (const json& method : table_.all()) {
@@ -339,8 +338,8 @@ INSTANTIATE_TEST_SUITE_P(Part, CompareThree, testing::Range<std::size_t>(0, kCom
 
 class Refusals : public OptionsTogether {
  protected:
-  /// Renders what a method cannot do, or masks of a method that has none, with each scene, or with one scene a method:
-  /// impossible combinations are refused with a documented code and a reason, whatever is wrong.
+  /// Renders impossible combinations (scenes that a method cannot handle, or masks of a method that has none) with each
+  /// scene, or with one scene per method: they are refused with a documented exit code and a reason.
   void expect_scenes_refused(bool every_scene) {
     scenes_ = write_lit_scenes(folder_, false);
     std::size_t number = 0, refused = 0;
@@ -349,14 +348,14 @@ class Refusals : public OptionsTogether {
       for (const LitScene& scene : scenes_) {
         if (!can_have_masks(method, scene)) impossible.push_back(&scene);
       }
-      // One scene a method: another kind of light for the next method.
+      // One scene per method: each method gets another kind of light.
       if (!every_scene && !impossible.empty()) impossible = {impossible[number++ % impossible.size()]};
       for (const LitScene* scene : impossible) expect_refused(method, *scene);
       refused += impossible.size();
     }
     EXPECT_GT(refused, table_.all().size() / 2);
   }
-  /// Gives wrong values of each option to the parser, and to the program one of each option, or of each method.
+  /// Gives wrong values of each option to the parser, and one of each option, or of each method, to the program.
   void expect_values_refused(bool every_option) {
     scenes_ = write_lit_scenes(folder_, false);
     const std::vector<std::string> wrong = {"", "no such value", "-1", "1e400", "nan"};
@@ -429,8 +428,8 @@ TEST(CoveringArray, HasEveryAllowedCombination) {
   }
 }
 
-// Two groups of two factors, and one that goes with both: each group's nine pairs and six with `all`, in as many rows
-// as one group needs, and a group that has been seen whole has no news.
+// Two groups of two factors, and one factor that goes with both: all nine pairs of each group and six with `all`, in as
+// many rows as one group needs. A group whose combinations have all occurred has no news.
 TEST(CoveringArray, LeavesCombinationsOfTwoGroupsOut) {
   std::vector<Factor> factors = {{"all", {"0", "1"}}};
   for (const char* group : {"one", "two"}) {

@@ -13,14 +13,14 @@
 
 namespace penumbra::tests {
 
-/// A scene of a few triangles and two lights or more, and what these require of a method.
+/// A scene of a few triangles and at least two lights, and what it requires of a method.
 struct LitScene {
   std::string name, file;
   std::vector<std::string> lights;  ///< kinds, in order
   bool texture = false;
 };
 
-/// Writes NAME.json of the scenes with which options are tried. `many`: more of them.
+/// Writes NAME.json for each scene with which options are tried; `many`: more of them.
 std::vector<LitScene> write_lit_scenes(const std::filesystem::path& folder, bool many);
 
 /// Table of `penumbra methods --json`, with the queries that a command line needs.
@@ -35,11 +35,11 @@ class MethodTable {
   nlohmann::json methods_;
 };
 
-/// Choices with names: what a row of a covering array says.
+/// Named choices: a row of a covering array.
 class Row {
  public:
   Row(const std::vector<Factor>& factors, const Choices& choices);
-  /// Returns an empty text where nothing is chosen.
+  /// Returns an empty string if nothing is chosen.
   [[nodiscard]] const std::string& operator[](const std::string& factor) const;
   [[nodiscard]] bool has(const std::string& factor) const { return values_.contains(factor); }
 
@@ -47,16 +47,15 @@ class Row {
   std::map<std::string, std::string> values_;
 };
 
-/// The values that are tried for an option of a method, from its description; "" stands for an option not given. The
-/// default is given by its name, too, if `default_by_name`.
+/// Returns the values to try for an option of a method, from its description; "" stands for an option that is not
+/// given. With `default_by_name` the default is also given explicitly.
 std::vector<std::string> values_to_try(const nlohmann::json& option, bool default_by_name);
 
-/// Returns whether these options of a method exclude one another, or the other choices, as far as the method's page
-/// says so.
+/// Returns whether these options of a method exclude one another or the other choices, according to the method's page.
 bool options_exclude(const std::string& method, const std::map<std::string, std::string>& options,
                      const LitScene& scene, const Row& row);
 
-/// Options chosen for the method: factors are named METHOD.OPTION.
+/// Returns the options chosen for the method; factors are named METHOD.OPTION.
 std::map<std::string, std::string> options_of(const Row& row, const nlohmann::json& method);
 
 /// Checks a picture that a run has written. Adds failures to the current test.

@@ -54,7 +54,7 @@ bool finite_or_null(const json& value) {
   return value.is_null() || (value.is_number() && std::isfinite(value.get<double>()));
 }
 
-/// Null, or a number from 0 on.
+/// Returns whether the value is null or a number of at least 0.
 bool not_negative(const json& value) {
   return value.is_null() || (value.is_number() && value.get<double>() >= 0);
 }
@@ -155,7 +155,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
   const bool looks_through_camera = (options.contains("fit") && !is("fit", "receivers")) || is("reproject", "on");
   if (looks_through_camera && !all_planar) return true;
   const bool projected = options.contains("projection") && !is("projection", "window");
-  if (projected && options.contains("fit") && !is("fit", "receivers")) return true;  // a picture of all receivers
+  if (projected && options.contains("fit") && !is("fit", "receivers")) return true;  // these need maps of all receivers
   if (method == "edge-scatter") {
     return is("engine", "vulkan") && (is("rows", "exact") || !all_planar);
   }
@@ -187,7 +187,7 @@ bool options_exclude(const std::string& method, const std::map<std::string, std:
            (is("reproject", "on") && (circle || !receivers)) ||
            (offset && (circle || is("fit", "logpsm") || (options.contains("depth") && !is("depth", "first")))) ||
            (is("weights", "bilinear") && taps) ||
-           (method == "pcf" && faces && is("size", "8") && !options.contains("window"));  // its default is wider
+           (method == "pcf" && faces && is("size", "8") && !options.contains("window"));  // the default window is wider
   }
   if (method == "bitmask") return options.contains("subsample") && !is("subsample", "1") && !row["bits"].empty();
   if (method == "backproject") return is("form", "sphere") && scene.texture;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several view samples a pixel: their mean under a filter, and the shares of a pixel in mattes.
+// Tests pictures of several view samples per pixel: their mean under a filter, and a pixel's shares in mattes.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -39,7 +39,8 @@ TEST(PixelFilters, AreTheirFormula) {
   const PixelFilter box;
   EXPECT_EQ(box.share(0.49), 1);
   EXPECT_EQ(box.share(0.5), 0);
-  // A box takes a pixel's own view samples; a wider filter as many on both sides, but beyond the ends of the line.
+  // A box takes only a pixel's own view samples; a wider filter takes the same number on both sides, except beyond the
+  // ends of the line.
   for (const session::FilterTaps& taps : session::filter_taps(box, 3, 2))
     EXPECT_EQ(taps.shares, (std::vector<double>{1, 1}));
   const auto taps = session::filter_taps(wide, 3, 4);
@@ -73,14 +74,14 @@ double share_of(std::size_t k, std::size_t i) {
   constexpr std::size_t kSide = 3, kWidth = 24;
   const auto along = [](std::size_t sample, std::size_t pixel) {
     const double off = (static_cast<double>(sample) + 0.5) / kSide - (static_cast<double>(pixel) + 0.5);
-    if (std::abs(off) >= 1.5) return 0.0;  // the default width, to each side as in Cycles
+    if (std::abs(off) >= 1.5) return 0.0;  // the default half-width, as in Cycles
     const auto cosine = [&](double times) { return std::cos(times * (180 + 360 * off / 3) * std::numbers::pi / 180); };
     return 0.35875 - 0.48829 * cosine(1) + 0.14128 * cosine(2) - 0.01168 * cosine(3);
   };
   return along(k % (kSide * kWidth), i % kWidth) * along(k / (kSide * kWidth), i / kWidth);
 }
 
-/// Means computed independently: every view sample of a large picture, each with its weight.
+/// Compares with means computed independently: every view sample of a large picture, each with its weight.
 TEST_F(FilteredPictures, AreWeighedMeans) {
   const ExrFile filtered =
       picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0", "--pixel-filter", "blackman-harris"});
@@ -106,7 +107,7 @@ TEST_F(FilteredPictures, AreWeighedMeans) {
   EXPECT_EQ(filtered.integers.at("id"), one.integers.at("id"));
 }
 
-/// Cryptomatte's coverage is each name's share of the view samples; ranks are in its order.
+/// Cryptomatte's coverage is each name's share of the view samples; ranks are ordered by it.
 TEST_F(FilteredPictures, MattesAreShares) {
   const ExrFile box = picture("24x16", {"--pixel-samples", "9", "--pixel-tolerance", "0"}), large = picture("72x48");
   const json names = json::parse(large.attributes.at("penumbra.objects"));
@@ -144,7 +145,7 @@ TEST_F(FilteredPictures, MattesAreShares) {
     for (const char* group : {"CryptoObject00.", "CryptoObject01.", "CryptoObject02."})
       sum += filtered.floats.at(group + std::string("G"))[i] + filtered.floats.at(group + std::string("A"))[i];
     ASSERT_NEAR(sum, filtered.floats.at("A")[i], 25 * 0x1p-24) << i << ": 25 shares, each rounded to a float";
-    const float first = filtered.floats.at("CryptoObject00.R")[i];  // who has most of it
+    const float first = filtered.floats.at("CryptoObject00.R")[i];  // the name with the largest share
     double part = 0, shares = 0;
     for (std::size_t k = 0; k < object.size(); ++k) {
       const double share = share_of(k, i);
@@ -173,7 +174,7 @@ TEST(MatteShares, KnowNamesOfAllPictures) {
   EXPECT_FLOAT_EQ(here[2].part, 1.0f / 8);
 }
 
-/// A filter that reaches beyond a pixel, with weights that differ.
+/// A filter that reaches beyond a pixel, with unequal weights.
 session::PixelFilter wide_filter() {
   session::PixelFilter filter;
   filter.kind = session::PixelFilter::Kind::blackman_harris;
@@ -181,7 +182,7 @@ session::PixelFilter wide_filter() {
   return filter;
 }
 
-/// A pixel of one name gets the sum of its taps as any other does, added up in their order: the same float.
+/// A pixel with a single name gets the sum of its taps in the same order as any other pixel: the same float.
 TEST(MatteShares, OfOneNameAreSumsOfTaps) {
   constexpr std::uint32_t kSide = 3, kAcross = 9, kDown = 7, kSamples = kSide * kAcross;
   const session::PixelFilter filter = wide_filter();
@@ -219,7 +220,7 @@ TEST(MatteShares, OfOneNameAreSumsOfTaps) {
   EXPECT_GT(mixed, 10u);
 }
 
-/// Rows that are added once have the bits of sums that are kept in double.
+/// Rows that are added only once give the same bits as sums kept in double.
 TEST(PictureMean, OfRowsAddedOnceIsTheSame) {
   constexpr std::uint32_t kSide = 2, kAcross = 6, kDown = 8, kSamples = kSide * kAcross;
   const session::PixelFilter filter = wide_filter();

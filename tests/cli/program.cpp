@@ -45,7 +45,7 @@ std::vector<std::string> child_environment(const Invocation& invocation) {
   return environment_with(more);
 }
 
-/// Reads both pipes until the child closes them; sends the signals when their time has come.
+/// Reads both pipes until the child closes them; sends the signals at their times.
 void collect(pid_t child, int out, int err, const Invocation& invocation, Outcome& outcome) {
   const auto start = std::chrono::steady_clock::now();
   bool interrupted = false;

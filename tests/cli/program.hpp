@@ -27,7 +27,7 @@ struct Invocation {
 /// Runs the program that was built with these tests.
 Outcome run_program(const Invocation& invocation);
 
-/// An empty folder of its own for each test, removed afterwards.
+/// A test with its own empty folder, which is removed afterwards.
 class ProgramTest : public testing::Test {
  protected:
   ProgramTest();
@@ -39,7 +39,7 @@ class ProgramTest : public testing::Test {
   [[nodiscard]] std::vector<std::string> files() const;
   [[nodiscard]] std::string read(const std::string& name) const;
 
-  /// A box on a floor under a square light, 48 × 32 pixels; every kind of pixel is in it.
+  /// A box on a floor under a square light, 48 × 32 pixels; it contains every kind of pixel.
   std::string tiny_scene() const;
   /// A second of animation: a body over a floor that its lamp shines down on, seen by two cameras from above.
   std::string moving_scene() const;

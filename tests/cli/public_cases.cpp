@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of kinds that people reported to other tools, with what must come of each: every table in tests/public_cases/
-// (its README.md says what a table's members mean).
+// Tests files of kinds that people reported to other tools, with the expected result of each: every table in
+// tests/public_cases/ (its README.md explains the tables' members).
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,8 @@ using testing::HasSubstr;
 
 const std::filesystem::path kCases = PENUMBRA_PUBLIC_CASES;
 
-/// Numbers within 10⁻⁶ of themselves: volumes of round things, and bounds in single precision.
+/// Returns whether values agree; numbers may differ by 10⁻⁶ of themselves, for volumes of round shapes and bounds in
+/// single precision.
 bool agree(const json& wanted, const json& found) {
   if (wanted.is_number() && found.is_number()) {
     const double a = wanted.get<double>(), b = found.get<double>();
@@ -62,7 +63,7 @@ TEST_F(PublicCases, MeshesAreReadAsTheyAreMeant) {
   const json cases = table("meshes.json");
   std::vector<std::string> arguments = {"inspect", "--quiet", "--list", "0", "--json", "-"};
   for (const json& wanted : cases) arguments.push_back((kCases / wanted["file"].get<std::string>()).string());
-  const Outcome outcome = run(arguments);  // one process for all: they are many
+  const Outcome outcome = run(arguments);  // one process for all files: there are many
   ASSERT_EQ(outcome.code, 3) << "some are refused";
   const json reports = json::parse(outcome.out);
   ASSERT_EQ(reports.size(), cases.size());
@@ -88,8 +89,8 @@ TEST_F(PublicCases, EveryMeshIsInTheTableAndInTheReadme) {
   }
 }
 
-/// A method that adds up the shadows of wedges at each edge is tested, too. The exact area is the judge, and does not
-/// look at edges in that manner.
+/// Also tests a method that adds up the shadows of wedges at each edge. The judge is the exact area, which does not use
+/// edges in that way.
 TEST_F(PublicCases, StraightCornersChangeNoShadow) {
   const std::string scene = (kCases / "meshes/ngon_straight_corners.json").string();
   const Outcome outcome = run({"compare", scene, "-o", path("out"), "--methods", "soft-volume", "--reference", "exact",

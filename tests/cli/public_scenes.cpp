@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene files as other programs write them, after public reports (tests/public_cases/README.md): what the program makes
-// of each, by values that were computed without it.
+// Tests scene files as other programs write them, from public reports (tests/public_cases/README.md): what the program
+// reads from each must agree with values computed without it.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,7 @@ const std::filesystem::path kSceneCases = PENUMBRA_PUBLIC_CASES;
 
 class PublicScenes : public ProgramTest {
  protected:
-  /// The scene that `convert` wrote has these values.
+  /// Expects these values in the scene that `convert` wrote.
   void expect_scene(const json& expected) const {
     const json scene = json::parse(read("out.json"));
     for (const auto& [key, value] : expected.items()) {

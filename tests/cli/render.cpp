@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render`: what its files hold, and that the same command gives the same bytes.
+// Tests `render`: what its files hold, and that the same command gives the same bytes.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -215,7 +215,7 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
       run({"render", path("scene.json"), "-o", path("b.exr"), "--method", "pcss", "--bits", path("out.bits")});
   EXPECT_EQ(bits.code, 2);
   EXPECT_THAT(bits.err, HasSubstr("pcss"));
-  // Beauty without bits, for few pixels, is V times the unshadowed light.
+  // With subsample the method gives V only: beauty is V times the unshadowed light, and --bits is refused.
   const std::vector<std::string> few = {"render",  path("scene.json"), "-o",      path("few.exr"),   "--method",
                                         "bitmask", "--method-option",  "size=64", "--method-option", "subsample=2"};
   ASSERT_EQ(run(few).code, 0);
@@ -225,7 +225,7 @@ TEST_F(RenderOnce, ImageMethodsSayHowTheyMakeBeauty) {
   EXPECT_EQ(run(few_bits).code, 2);
 }
 
-/// Picture and stats name what computed the shadow: the processor where its vector units did, else the Vulkan device.
+/// Picture and stats name what computed the shadow: the processor if its vector units did, otherwise the Vulkan device.
 TEST_F(RenderOnce, SaysWhatItRanOn) {
   tiny_scene();
   const auto ran_on = [&](const std::string& method, const std::vector<std::string>& options) {
@@ -253,7 +253,7 @@ TEST_F(RenderOnce, DefaultMethodCanDoThePattern) {
   const Outcome outcome = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "sobol"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(read_exr(path("out.exr")).attributes.at("penumbra.method"), "edge-scatter");
-  // Both engines can: the bits are the same.
+  // Both engines can do this, and give the same bits.
   std::vector<std::string> bits;
   for (const char* engine : {"engine=vulkan", "engine=native"}) {
     const Outcome named = run({"render", tiny_scene(), "-o", path("out.exr"), "--sample-pattern", "jittered",

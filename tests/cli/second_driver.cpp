@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A second driver for processors, SwiftShader, as Debian's package chromium brings it: subgroups of four lanes, neither
-// double precision nor 64-bit integers. Methods that run on it are right there, too; others are refused by name.
+// Tests on a second software driver, SwiftShader, from Debian's package chromium: it has subgroups of four lanes, and
+// neither double precision nor 64-bit integers. Methods that run on it must be right there, too; others are refused by
+// name.
 
 #include "tests/cli/program.hpp"
 
@@ -19,7 +20,7 @@ using testing::UnorderedElementsAre;
 constexpr const char* kDriver = "/usr/lib/chromium/vk_swiftshader_icd.json";
 const std::map<std::string, std::string> kThere = {{"VK_DRIVER_FILES", kDriver}, {"VK_ICD_FILENAMES", kDriver}};
 
-constexpr double kPatience = 1800;  // seconds: it compiles some passes for long
+constexpr double kPatience = 1800;  // seconds: compiling some passes takes long
 
 class SecondDriver : public ProgramTest {
  protected:
@@ -73,7 +74,7 @@ TEST_F(SecondDriver, ARefusedMethodNamesWhatIsMissing) {
   EXPECT_THAT(files(), ElementsAre("scene.json"));
 }
 
-/// The list leaves edge-scatter out, whose second pass this driver compiles for a quarter of a minute.
+/// The list leaves out edge-scatter, whose second pass takes this driver a quarter of a minute to compile.
 TEST_F(SecondDriver, ExactMethodsGiveTheSameBits) {
   const std::string scene = tiny_scene();
   for (const char* method : {"view-sample", "depth-complexity"}) expect_the_same(scene, method, {"--size", "24x16"});
@@ -83,7 +84,7 @@ TEST_F(SecondDriver, ExactMethodsGiveTheSameBitsOnScenesFull) {
   for (const char* scene : {"contact.json", "large-penumbra.json"}) {
     for (const char* pattern : {"rows", "sobol"}) {
       for (const std::string method : {"edge-scatter", "view-sample", "depth-complexity"}) {
-        // Compiled for many minutes; the self-test below does it once.
+        // This takes many minutes to compile; the self-test below does it once.
         if (method == "edge-scatter" && std::string(pattern) == "sobol") continue;
         expect_the_same(std::string(PENUMBRA_SCENES) + "/" + scene, method,
                         {"--size", "64x48", "--light-samples", "64", "--sample-pattern", pattern});
@@ -92,8 +93,8 @@ TEST_F(SecondDriver, ExactMethodsGiveTheSameBitsOnScenesFull) {
   }
 }
 
-/// Each pass that has a twin in C++, passes of maps included, agrees with it. Tables of sines and cosines (convolution)
-/// may be off by half of 2^-11, the error that Vulkan permits for each sine: they store half of it.
+/// Each pass that has a twin in C++, including passes of maps, agrees with it. Tables of sines and cosines
+/// (convolution) store half of each sine, and so may be off by half of 2^-11, the error that Vulkan permits for a sine.
 TEST_F(SecondDriver, PassesAreTheirTwinsFull) {
   const Outcome outcome = run_program({.arguments = {"devices", "--self-test", "--json"},
                                        .environment = kThere,

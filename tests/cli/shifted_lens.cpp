@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `render` through a shifted lens: what it shows is a part of a larger picture.
+// Tests `render` through a shifted lens: it shows a part of a larger picture.
 #include "tests/cli/program.hpp"
 
 #include "base/exr.hpp"
@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A picture of 40 × 30 whose lens is shifted 15 pixels to the right and 6 down sees what is there in one of 70 × 42,
-/// whatever the method: those that draw volumes look for them on the screen.
+/// A picture of 40 × 30 whose lens is shifted 15 pixels to the right and 6 down shows that part of a picture of 70 ×
+/// 42, with any method, including those that draw volumes on the screen.
 TEST_F(ProgramTest, AShiftedLensShowsPartOfALargerPicture) {
   constexpr std::uint32_t kWidth = 40, kHeight = 30, kRight = 15, kDown = 6;
   constexpr std::uint32_t kWide = kWidth + 2 * kRight, kHigh = kHeight + 2 * kDown;
@@ -51,7 +51,7 @@ TEST_F(ProgramTest, AShiftedLensShowsPartOfALargerPicture) {
       for (std::uint32_t x = 0; x < kWidth; ++x) {
         const std::size_t here = std::size_t{y} * kWidth + x,
                           there = (std::size_t{y} + 2 * kDown) * kWide + x + 2 * kRight;
-        // Two roundings of the tangent apart.
+        // The two results are two roundings of the tangent apart.
         EXPECT_NEAR(part.floats.at("P.X")[here], whole.floats.at("P.X")[there], 1e-5f);
         EXPECT_NEAR(part.floats.at("Z")[here], whole.floats.at("Z")[there], 1e-5f);
         differing += std::abs(part.floats.at("V")[here] - whole.floats.at("V")[there]) > 1.5f / 64 ? 1 : 0;

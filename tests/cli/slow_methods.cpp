@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that take too long are left out of a comparison, unless they are named.
+// Tests that methods that take too long are left out of a comparison, unless they are named.
 #include "app/process/terminal_progress.hpp"
 #include "scenes/formats/reader.hpp"
 #include "session/comparison/comparison.hpp"
@@ -26,7 +26,8 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Takes two milliseconds a row, and `each_tile` milliseconds a tile, as a method that draws its maps again for each.
+/// A method that takes two milliseconds per row, and `each_tile` milliseconds per tile, like one that draws its maps
+/// again for each.
 class Slow final : public visibility::Method {
  public:
   explicit Slow(std::uint32_t each_tile = 0, std::uint32_t each_row = 2) : each_tile_(each_tile), each_row_(each_row) {
@@ -71,7 +72,7 @@ class SlowMethods : public ProgramTest {
     run.scene = tiny_scene();
     return run;
   }
-  /// Opens the tiny scene in that many pixels, "8x50".
+  /// Opens the tiny scene with this many pixels, such as "8x50".
   [[nodiscard]] session::Session open(const std::string& size) {
     session::RunOptions run = options();
     run.size = size;
@@ -82,8 +83,8 @@ class SlowMethods : public ProgramTest {
   app::TerminalProgress progress_{false};
 };
 
-// 200 rows take 0.4 s or more: after a tenth of it the run ends, in tiles of 4, 8, 16 … rows, and says how long all
-// would take.
+// 200 rows take 0.4 s or more. The limit is a tenth of that: the run ends between tiles, which have 4, 8, 16 … rows,
+// and reports how long all would take.
 TEST_F(SlowMethods, EndBetweenTiles) {
   const session::Session session = open("8x200");
   const auto none = [](const session::TileResult&) {};
@@ -99,19 +100,19 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   EXPECT_EQ(slow.tiles.front(), 4U);
   for (std::size_t i = 1; i < slow.tiles.size(); ++i) EXPECT_LE(slow.tiles[i], 2 * slow.tiles[i - 1]);
   EXPECT_LE(std::reduce(slow.tiles.begin(), slow.tiles.end()), 100U) << "beyond the limit there is one tile at most";
-  // The timed run is in one piece if the method is given the time that it takes.
+  // With enough time, the timed run is in one piece.
   Slow patient;
   plan.most_seconds = 1e6;
   EXPECT_EQ(session::run_method(patient, session, plan, none, progress_).times.runs, 1U);
   EXPECT_THAT(patient.tiles, testing::ElementsAre(4U, 8U, 16U, 32U, 64U, 76U, 200U));
-  // A run without a discarded one has no limit.
+  // Without a discarded first run there is no limit.
   Slow first;
   plan.most_seconds = 0;
   plan.discard_first = false;
   EXPECT_NO_THROW(session::run_method(first, session, plan, none, progress_));
 }
 
-// Fifty rows take 0.1 s or more: a second run does not fit into 0.15 s after the first, which is made in any case.
+// Fifty rows take 0.1 s or more: after the first run, which is always made, a second one does not fit into 0.15 s.
 TEST_F(SlowMethods, RunAsOftenAsFits) {
   const session::Session session = open("8x50");
   session::RunPlan plan{.lights = session.lights, .runs = 5, .run_seconds = 0.15};
@@ -122,8 +123,8 @@ TEST_F(SlowMethods, RunAsOftenAsFits) {
   EXPECT_EQ(session::run_method(slow, session, plan, none, progress_).times.runs, 5U);
 }
 
-// Sixty-four tiles of 80 ms would take 5 s, one takes 80 ms: less than the limit, so the method is kept. Its warm-up is
-// not the time of the first run's six tiles.
+// Sixty-four tiles of 80 ms would take 5 s, but one tile takes 80 ms, below the limit, so the method is kept. Its
+// warm-up time is not that of the first run's six tiles.
 TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
   const session::Session session = open("8x200");
   Slow slow(80, 0);
@@ -136,8 +137,7 @@ TEST_F(SlowMethods, AreNotThoseWhoseTilesCostMuch) {
   EXPECT_LT(done.times.warmup.value(), 0.5 * (first - timed)) << "this is what the additional tiles took";
 }
 
-// Slow methods of a group are left out by name, with the others' results in their places; a method that is named is
-// kept.
+// Slow methods of a group are left out by name, and the others' results keep their places; a named method is kept.
 TEST_F(SlowMethods, AreLeftOutOfGroupsByName) {
   session::ComparisonOptions comparison;
   comparison.methods = session::parse_methods("raytrace,geometry");

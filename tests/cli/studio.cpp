@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh file is a scene: a studio is put around it, chosen by options.
+// Tests a mesh file as a scene: a studio is put around it, chosen by options.
 
 #include "base/exr.hpp"
 #include "tests/cli/program.hpp"
@@ -21,7 +21,7 @@ class StudioCommands : public ProgramTest {
   StudioCommands() {
     write("roof.obj",
           "v -1 1 -1\nv 1 1 -1\nv 1 1 1\nv -1 1 1\nv 0 2 0\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
-          "v 0 0 0\nv 0.05 0 0\nv 0 1 0.05\nf 6 7 8\n");  // on a leg
+          "v 0 0 0\nv 0.05 0 0\nv 0 1 0.05\nf 6 7 8\n");  // a leg under the roof
   }
   [[nodiscard]] Outcome render(std::vector<std::string> more, const std::string& scene = "roof.obj") const {
     more.insert(more.begin(), {"render", path(scene), "-o", path("out.exr"), "--size", "32x24"});
@@ -53,7 +53,7 @@ TEST_F(StudioCommands, OptionsChooseIt) {
                  "0,5,0:0,1,0:90", "--add-light", "sun:0,-1,0:0"})
                 .code,
             0);
-  EXPECT_EQ(std::ranges::count(channel("A"), 1.0f), 16 * 16);  // the roof alone, 2 of 8 units wide
+  EXPECT_EQ(std::ranges::count(channel("A"), 1.0f), 16 * 16);  // only the roof is visible, 2 of 8 units wide
   ASSERT_EQ(render({"--camera", "fit", "--add-light", "sphere:0,4,0:0.2", "--light", "sphere"}).code, 0);
   ASSERT_EQ(run({"compare", path("roof.obj"), "-o", path("compared"), "--size", "8x8", "--methods", "edge-scatter",
                  "--runs", "1"})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `sweep`: its three files say the same, and what it concludes follows from its rows.
+// Tests `sweep`: its three files agree, and its conclusions follow from its rows.
 #include "app/sweep/ranges.hpp"
 #include "base/error.hpp"
 #include "tests/cli/program.hpp"
@@ -51,7 +51,7 @@ class SweepTest : public ProgramTest {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run(arguments);
   }
-  /// Column names to values, a map a row.
+  /// Returns the rows, each a map from column names to values.
   [[nodiscard]] std::vector<std::map<std::string, std::string>> csv() const {
     std::istringstream text(read("dir/sweep.csv"));
     std::vector<std::vector<std::string>> lines;
@@ -89,7 +89,7 @@ TEST_F(SweepTest, RowsAreWhatCompareSays) {
     EXPECT_EQ(table[i].at("size"), rows[i].at("options").value("size", ""));
     EXPECT_EQ(table[i].at("pareto") == "1", rows[i].at("pareto").get<bool>());
   }
-  // Asks `compare` the same, with the light at that size in the file.
+  // Runs `compare` for the same, with the light at that size in the file.
   std::string scene = read("scene.json");
   EXPECT_THAT(read("dir/sweep.svg"), HasSubstr("light.half=0.6"));
   json at_size = json::parse(scene);
@@ -145,7 +145,7 @@ TEST_F(SweepTest, ConclusionsFollowFromTheRows) {
   }
 }
 
-/// The scene may stand last, and options for all methods reach those of every number of light samples.
+/// The scene may come last, and options for all methods apply with every number of light samples.
 TEST_F(SweepTest, TakesOptionsOfAllMethodsAndTheSceneLast) {
   const Outcome outcome =
       run({"sweep", "-o", path("dir"), "--runs", "1", "--size", "16x16", "--methods", "edge-scatter,pcf",

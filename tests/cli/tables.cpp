@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// methods, devices, --help, --version, convert: what they print can be read by people and by programs.
+// Tests methods, devices, --help, --version and convert: people and programs can read what they print.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ TEST_F(Tables, MethodsSayWhatTheyAre) {
   }
 }
 
-// An option may add what a method can do, or take it away.
+// An option may add something that a method can do, or take it away.
 TEST_F(Tables, MethodsSayWhatAnOptionMakesOfThem) {
   const json methods = json::parse(run({"methods", "--json"}).out).at("methods");
   const auto variant = [&](const std::string& name, const json& options) {
@@ -87,7 +87,7 @@ TEST_F(Tables, DevicesSayWhatTheyCan) {
   const json devices = json::parse(run({"devices", "--json"}).out).at("devices");
   for (const json& device : devices) {
     EXPECT_FALSE(device.at("name").get<std::string>().empty());
-    // Each device can be used, or the list says why not.
+    // Each device is usable, or the list says why not.
     EXPECT_EQ(device.at("usable").get<bool>(), device.at("refusals").empty()) << device;
   }
   const json contexts = json::parse(run({"devices", "--json"}).out).at("opengl");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// wedges: what it prints and writes, and its exit codes.
+// Tests wedges: what it prints and writes, and its exit codes.
 #include "tests/cli/program.hpp"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using WedgesCommand = ProgramTest;
 
 const std::string kShipped = std::string(PENUMBRA_SCENES) + "/broken.json";
 
-/// The sign of a plane at a point; well away from zero in what is tested here.
+/// Returns a number with the sign of a plane at a point; in these tests it is well away from zero.
 double height(const json& plane, const json& point) {
   double sum = plane[3].get<double>();
   for (std::size_t i = 0; i < 3; ++i) sum += plane[i].get<double>() * point[i].get<double>();
@@ -55,7 +55,7 @@ TEST_F(WedgesCommand, ValidatesItself) {
   }
 }
 
-/// Areas are those of the light itself, whatever its picture weighs.
+/// Areas are those of the light itself, whatever the weights of its texture.
 TEST_F(WedgesCommand, ValidatesUnderATexturedLight) {
   const std::string scene = PENUMBRA_SCENES "/textured-light.json";
   const Outcome outcome = run({"wedges", scene, "--light", "window", "--validate"});
@@ -80,7 +80,7 @@ TEST_F(WedgesCommand, CatchesWhatIsWrongOnPurpose) {
   }
 }
 
-/// The JSON chunk of a GLB.
+/// Returns the JSON chunk of a GLB.
 json gltf_of(const std::string& bytes) {
   EXPECT_EQ(bytes.substr(0, 4), "glTF");
   std::uint32_t length = 0;

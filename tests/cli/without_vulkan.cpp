@@ -20,7 +20,7 @@ using testing::Not;
 const std::map<std::string, std::string> kNowhere = {{"VK_DRIVER_FILES", "/nowhere.json"},
                                                      {"VK_ICD_FILENAMES", "/nowhere.json"}};
 
-/// Returns whether the method can do the lamp of tiny_scene().
+/// Returns whether the method can handle the lamp of tiny_scene().
 bool does_lamps(const visibility::MethodDescription& method) {
   return method.lights.contains(visibility::LightKind::rectangle);
 }
@@ -42,7 +42,7 @@ TEST_F(WithoutVulkan, ProcessorMethodsGiveTheSameBytes) {
   for (const visibility::MethodDescription* method : session::all_methods()) {
     if (!session::needs_device(method->name, {}) && does_lamps(*method)) runs.push_back({"--method", method->name});
   }
-  ASSERT_GE(runs.size(), 9U);  // three with vector units, five more, and both references
+  ASSERT_GE(runs.size(), 9U);  // the default twice, and at least seven methods
   for (const std::vector<std::string>& more : runs) {
     const std::string what = more.empty() ? "default" : more.back();
     ASSERT_EQ(render(more, "with.exr", {}).code, 0) << what;
@@ -60,7 +60,7 @@ TEST_F(WithoutVulkan, DeviceMethodsAreRefusedByName) {
     const Outcome outcome = render(more, "out.exr", kNowhere);
     EXPECT_EQ(outcome.code, 4) << more[1];
     EXPECT_THAT(outcome.err, HasSubstr("no Vulkan device")) << more[1];
-    if (more[1] != "raytrace") {  // which needs no device itself: one was named
+    if (more[1] != "raytrace") {  // raytrace needs no device, but one was named
       EXPECT_THAT(outcome.err, HasSubstr(more[1] + ": "));
     }
     EXPECT_THAT(files(), ElementsAre("scene.json"));
@@ -88,7 +88,7 @@ TEST_F(WithoutVulkan, CompareLeavesOutOfAGroupWhatNeedsADevice) {
     if (!needs) continue;
     EXPECT_THAT(all.err, HasSubstr(method->name));
   }
-  // A method that was named fails by itself, and the others are compared all the same.
+  // A named method fails alone; the others are compared all the same.
   const Outcome named = compare("pcf,edge-scatter");
   EXPECT_EQ(named.code, 4);
   EXPECT_THAT(named.err, AllOf(HasSubstr("pcf: "), HasSubstr("no Vulkan device")));

@@ -39,14 +39,14 @@ std::string scene_with(const std::string& mesh) {
   return text.replace(text.find("MESH"), 4, mesh);
 }
 
-/// A user number that nobody is likely to have, another one for each run.
+/// Returns a user number that probably nobody has, another one for each run.
 uid_t stranger() {
   static uid_t serial = 0;
   return 1'000'000'000 + static_cast<uid_t>(::getpid()) * 100 + serial++ % 100;
 }
 
-/// Returns the variables that are added to the environment. A sanitizer is told what it could not stand otherwise: a
-/// library that is loaded before it, and that it cannot start the process that looks for leaks at the end.
+/// Returns the variables that are added to the environment. A sanitizer is told to accept a library that is loaded
+/// before it, and not to look for leaks at the end if it could not start the process for that.
 std::map<std::string, std::string> additions(const Conditions& conditions) {
   std::map<std::string, std::string> added = conditions.environment;
   if (!kSanitized) return added;
@@ -59,7 +59,7 @@ std::map<std::string, std::string> additions(const Conditions& conditions) {
   return added;
 }
 
-/// Returns whether other users may go through all folders above the file.
+/// Returns whether other users may enter all folders above the file.
 bool is_reachable(const std::filesystem::path& file) {
   for (std::filesystem::path folder = file.parent_path();; folder = folder.parent_path()) {
     const auto allowed = std::filesystem::status(folder).permissions();
@@ -68,8 +68,8 @@ bool is_reachable(const std::filesystem::path& file) {
   }
 }
 
-/// The program and its helper where strangers can start them: where they were built, or, below a folder that only its
-/// owner may enter, such as root's home, in copies that go with this process.
+/// The program and its helper where other users can start them: in the build folder or, if that is below a folder that
+/// only its owner may enter, such as root's home, as copies that are removed with this process.
 class StrangersProgram {
  public:
   StrangersProgram() {
@@ -188,7 +188,7 @@ Ending Running::wait() {
     pipes.read_within(100);
     if (std::chrono::duration<double>(Clock::now() - start).count() > timeout_) send(SIGKILL);
   }
-  while (!has_ended()) {  // closing its streams is not ending
+  while (!has_ended()) {  // it may close its streams before it ends
     if (std::chrono::duration<double>(Clock::now() - start).count() > timeout_) send(SIGKILL);
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -17,8 +17,9 @@
 
 namespace penumbra::tests {
 
-/// Built with a sanitizer, which has needs of its own: address space by the terabyte, a pipe to ask whether memory can
-/// be read, and to start the threads of libraries. What takes these away says nothing about the program then.
+/// Whether this is a build with a sanitizer, which has needs of its own: terabytes of address space, a pipe to ask
+/// whether memory can be read, and starting the threads of libraries. Tests that take these away then say nothing about
+/// the program.
 #if defined(PENUMBRA_SHADOW_MEMORY)
 inline constexpr bool kSanitized = true;
 #else
@@ -44,20 +45,20 @@ struct Conditions {
   std::map<std::string, std::string> environment = {};  ///< in addition to the test's own
   std::vector<Limit> limits = {};
   Stream in = Stream::captured, out = Stream::captured, err = Stream::captured;
-  bool as_stranger = false;  ///< as a user who has no other process, where the test runs as root: for RLIMIT_NPROC
+  bool as_stranger = false;  ///< as a user without other processes, if the test runs as root: for RLIMIT_NPROC
   double timeout = 300;      ///< seconds until SIGKILL, which no test expects; the code is then 137
 };
 
 struct Ending {
   int code = -1;  ///< exit code; 128 + signal if it was ended by one
   std::string out, err;
-  std::uint64_t peak_bytes = 0;  ///< resident, of the program or of a child that it waited for
+  std::uint64_t peak_bytes = 0;  ///< resident memory of the program, or of a child that it waited for
 };
 
-/// The documented exit codes.
+/// Returns whether this is a documented exit code.
 bool is_documented(int code);
 
-/// A program that was started and not waited for; killed with this object.
+/// A program that was started and is not waited for; it is killed with this object.
 class Running {
  public:
   explicit Running(const Conditions& conditions);
@@ -68,9 +69,9 @@ class Running {
   [[nodiscard]] pid_t pid() const { return pid_; }
   void send(int signal) const { ::kill(pid_, signal); }
   [[nodiscard]] bool has_ended();
-  /// Reads what it says until its end.
+  /// Reads the program's output until it ends.
   Ending wait();
-  /// The first child that it has, waited for busily; nothing if it ends without one.
+  /// Returns the program's first child, found by polling, or nullopt if it ends without one.
   std::optional<pid_t> first_child();
 
  private:
@@ -84,7 +85,7 @@ class Running {
 
 Ending run_under(const Conditions& conditions);
 
-/// A test with an empty folder of its own, which anybody may write to, removed afterwards.
+/// A test with its own empty folder that anybody may write to, removed afterwards.
 class FaultTest : public testing::Test {
  protected:
   FaultTest();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A disk that fails, or a process that is killed, at any of its calls: each output is the old one, or whole, or not
-// there; exit code 0 or 4; and nothing is left, at the latest after the next run.
+// Tests a disk that fails, or a process that is killed, at any of its calls: each output is the old file, the whole new
+// one, or absent; the exit code is 0 or 4; and nothing is left over, at the latest after the next run.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using testing::Not;
 
 struct DiskFault {
   const char* call;
-  int error;  ///< 0: killed there
+  int error;  ///< 0: the process is killed at this call
   bool named_parts;
 };
 
@@ -68,7 +68,7 @@ TEST_P(DiskFaults, EachOutputIsOldOrWholeOrNotThere) {
         EXPECT_TRUE(read(name) == content) << when << ": " << name << " is torn";
       }
     }
-    // No room for one of them: none of them appears.
+    // If there is no room for one output, none appears.
     if (GetParam().error != 0 && std::string(GetParam().call) == "write" && ending.code != 0) {
       for (const char* name : {"out.exr", "out.bits", "stats.json"})
         EXPECT_FALSE(std::filesystem::exists(folder_ / name)) << when << ": " << name;
@@ -81,7 +81,7 @@ TEST_P(DiskFaults, EachOutputIsOldOrWholeOrNotThere) {
     if (ending.code == 0 && ++faults > 0) break;
     ++faults;
   }
-  // A call failed in every run before the last, which alone got through.
+  // A call failed in every run but the last, which succeeded.
   EXPECT_GT(faults, 1) << "no call ever failed";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequences whose processes are killed: what was rendered stays, nothing is rendered twice, and nobody is left behind.
+// Tests sequences whose processes are killed: rendered frames stay, nothing is rendered twice, and no process is left.
 #include "base/exr.hpp"
 #include "tests/faults/child.hpp"
 
@@ -33,7 +33,7 @@ class FarmFaults : public FaultTest {
   }
 
   struct Picture {
-    ino_t file = 0;  // another one, if it was written again
+    ino_t file = 0;  // changes if the file is written again
     std::string bytes;
     bool operator==(const Picture&) const = default;
   };
@@ -46,15 +46,15 @@ class FarmFaults : public FaultTest {
     }
     return all;
   }
-  /// Waits until so many pictures are there, or the program has ended.
+  /// Waits until this many pictures exist, or the program has ended.
   void wait_for_pictures(Running& program, std::size_t count) const {
     while (pictures().size() < count && !program.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
-  /// Running processes with this folder on their command line.
+  /// Returns the running processes with this folder on their command line.
   [[nodiscard]] std::vector<pid_t> processes() const {
     std::vector<pid_t> all;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
-      std::ifstream file(entry.path() / "cmdline", std::ios::binary);  // empty, of one that has ended
+      std::ifstream file(entry.path() / "cmdline", std::ios::binary);  // empty for a process that has ended
       const std::string line{std::istreambuf_iterator<char>(file), {}};
       if (line.find(folder_.string()) != std::string::npos) all.push_back(std::stoi(entry.path().filename().string()));
     }
@@ -64,7 +64,7 @@ class FarmFaults : public FaultTest {
     for (int i = 0; i < 1000 && !processes().empty(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
     EXPECT_THAT(processes(), testing::IsEmpty());
   }
-  /// All eight, those of before as they were.
+  /// Expects all eight pictures, with those of `before` unchanged.
   void expect_whole(const std::map<std::string, Picture>& before) const {
     const auto now = pictures();
     EXPECT_EQ(now.size(), 8u);
@@ -119,7 +119,7 @@ TEST_F(FarmFaults, AnInterruptEndsAllWorkers) {
   }
 }
 
-/// Workers end with the one who started them, so that the next one has the frames for itself.
+/// Workers end with the process that started them, so that the next run has the frames to itself.
 TEST_F(FarmFaults, NoWorkerOutlivesAKill) {
   Running program({.arguments = sequence("submit", {"--jobs", "2"})});
   wait_for_pictures(program, 1);
@@ -132,11 +132,11 @@ TEST_F(FarmFaults, NoWorkerOutlivesAKill) {
   expect_whole(before);
 }
 
-/// Workers do not end by themselves meanwhile: a frame takes half a minute here.
+/// Workers cannot finish in the meantime: a frame takes half a minute here.
 TEST_F(FarmFaults, NoWorkerFinishesItsFrameAfterAKill) {
   Running program({.arguments = sequence("submit", {"--jobs", "2", "--light-samples", "4096"}, "768x768")});
   while (processes().size() < 3 && !program.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // past its start
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));  // until it is past its start
   program.send(SIGKILL);
   EXPECT_EQ(program.wait().code, 137);
   expect_nobody();

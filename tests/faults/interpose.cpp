@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loaded before the C library (LD_PRELOAD) by tests: makes the n-th call of a function fail, or be the last one of the
-// process; or a driver's threads deaf.
+// Loaded before the C library (LD_PRELOAD) by tests: makes the n-th call of a function fail, or kills the process
+// there, or keeps a driver's threads from working.
 //   PENUMBRA_FAULT_CALL=write|fsync|linkat|rename|open   which calls count: on regular files (pwrite as write), and
 //                                                        opens that create one
-//   PENUMBRA_FAULT_AT=N                                  the one that fails, from 1
-//   PENUMBRA_FAULT_ERRNO=E                               how; 0: the process is killed there
-//   PENUMBRA_FAULT_DEAF=NAME                             threads that a library whose path holds NAME starts do nothing
+//   PENUMBRA_FAULT_AT=N                                  which of these calls fails, counted from 1
+//   PENUMBRA_FAULT_ERRNO=E                               errno of the failure; 0: the process is killed there
+//   PENUMBRA_FAULT_DEAF=NAME                             threads that a library with NAME in its path starts do nothing
 
 #include <atomic>
 #include <cerrno>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program is killed at moments drawn at random, while it renders and compares: no file is torn, and the next run
-// leaves none but its own.
+// Tests the program killed at random moments while it renders and compares: no file is torn, and the next run leaves
+// only its own files.
 #include "base/exr.hpp"
 #include "tests/faults/child.hpp"
 
@@ -31,7 +31,7 @@ class KillFaults : public FaultTest {
       std::this_thread::sleep_for(moment);
       program.send(signal);
       const Ending ending = program.wait();
-      // Signals have the system's default action before the program's main begins.
+      // Before the program's main begins, signals have the system's default action.
       EXPECT_THAT(ending.code, AnyOf(0, 130, 128 + signal)) << ending.err;
       if (ending.code == 130) {
         expect_no_parts();

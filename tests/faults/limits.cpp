@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Resource limits that are too low for the work, for part of it, or for anything: exit code 0 or 4, a message that
-// names the matter, no hang, and nothing left behind.
+// Tests resource limits that are too low for the work, for part of it, or for anything: exit code 0 or 4, a message
+// that names the cause, no hang, and nothing left behind.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ constexpr const char* kAsRoot = "the limit counts all processes of the user; run
 
 class LimitFaults : public FaultTest {
  protected:
-  /// Everything that must hold for a limited run, whatever the limit; returns its exit code.
+  /// Checks everything that must hold for a limited run, whatever the limit; returns its exit code.
   int check(const Conditions& conditions, const std::string& what) const {
     const Ending ending = run_under(conditions);
     EXPECT_THAT(ending.code, AnyOf(0, 4)) << what << ": " << ending.err;
@@ -41,7 +41,7 @@ class LimitFaults : public FaultTest {
 TEST_F(LimitFaults, FilesThatMayNotGrow) {
   (void)small_scene();
   for (const rlim_t bytes : {0ul, 1ul, 512ul, 4096ul, 8192ul, 1ul << 20}) {
-    if (kSanitized && bytes == 0) continue;  // ThreadSanitizer's own start writes a file
+    if (kSanitized && bytes == 0) continue;  // ThreadSanitizer writes a file at its own start
     const int code = check({.arguments = render(), .limits = {{RLIMIT_FSIZE, bytes}}}, std::to_string(bytes));
     EXPECT_EQ(code, bytes < (1 << 20) ? 4 : 0) << bytes;
   }
@@ -89,10 +89,10 @@ TEST_F(LimitFaults, FewThreadsForTheImportHelper) {
 TEST_F(LimitFaults, FewDescriptors) {
   (void)small_scene();
   for (const rlim_t files : {4ul, 5ul, 6ul, 8ul, 10ul, 12ul, 16ul, 20ul, 64ul}) {
-    if (kSanitized && files < 8) continue;  // of a pipe UBSan learns whether memory can be read
+    if (kSanitized && files < 8) continue;  // UBSan needs a pipe to learn whether memory can be read
     const Conditions conditions{.arguments = render(), .limits = {{RLIMIT_NOFILE, files}}};
-    // Files that this test itself has open may leave too few to load the program: then there is no answer of ours to
-    // check.
+    // Files that this test itself has open may leave too few descriptors to load the program: then the program gives no
+    // answer to check.
     if (files < 8 && run_under(conditions).err.find("while loading shared libraries") != std::string::npos) continue;
     check(conditions, std::to_string(files) + " descriptors");
   }

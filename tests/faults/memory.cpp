@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program takes memory in proportion to what it uses, and asks for it only where there is as much.
+// Tests that the program takes memory in proportion to what it uses, and first checks that there is enough.
 #include "base/exr.hpp"
 #include "base/memory.hpp"
 #include "tests/faults/child.hpp"
@@ -19,7 +19,7 @@ using testing::Not;
 
 class MemoryFaults : public FaultTest {
  protected:
-  /// A scene whose light has a picture of so many channels.
+  /// A scene whose light has a picture with this many channels.
   [[nodiscard]] std::string scene_with_picture(int channels) const {
     const std::vector<float> values(std::size_t{512} * 512, 1.0f);
     ExrImage picture;
@@ -43,7 +43,7 @@ class MemoryFaults : public FaultTest {
       "lights": [{"rectangle": {"center": [0,4,0], "halfU": [1,0,0], "halfV": [0,0,1]}}], "meshes": [)" +
                                    meshes + "]}");
   }
-  /// A scene of so many spheres, 960 triangles each, that share a mesh, and a floor under a light.
+  /// A scene with this many spheres of 960 triangles that share a mesh, and a floor under a light.
   [[nodiscard]] std::string forest(int spheres, const std::string& light, const std::string& shape) const {
     std::string places;
     for (int i = 0; i < spheres; ++i)
@@ -72,8 +72,8 @@ TEST_F(MemoryFaults, APicturesOtherChannelsTakeNone) {
 TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
   constexpr rlim_t kGibi = 1u << 30;
-  // Each of the eight meshes would fit. Nothing is made of a scene that does not fit as a whole: 92 bytes for a lone
-  // triangle.
+  // Each of the eight meshes would fit. Nothing is built of a scene that does not fit as a whole; a single triangle
+  // would take 92 bytes.
   for (const auto& [count, triangles] : {std::pair{1, 20'000'000}, {8, 2'000'000}}) {
     const Ending ending = convert(scene_of_soups(count, triangles), {{RLIMIT_AS, kGibi}});
     EXPECT_EQ(ending.code, 4) << ending.err;
@@ -89,7 +89,8 @@ TEST_F(MemoryFaults, WhatDoesNotFitIsRefusedWithFigures) {
   EXPECT_THAT(image.err, AllOf(HasSubstr("16000x8000 pixels"), HasSubstr("GiB"), HasSubstr("--size")));
 }
 
-/// Exact areas of a dome need a copy of each instance: with what the method takes of it, before any is made.
+/// Exact areas of a dome need a copy of each instance: their memory, with what the method needs, is checked before any
+/// is made.
 TEST_F(MemoryFaults, CopiesThatDoNotFitAreRefusedBeforeTheyAreMade) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
   const Ending ending = run_under({.arguments = {"render", forest(4000, "dome", "{}"), "-o", path("out.exr")},
@@ -100,8 +101,8 @@ TEST_F(MemoryFaults, CopiesThatDoNotFitAreRefusedBeforeTheyAreMade) {
   EXPECT_LT(ending.peak_bytes, 200u << 20) << "3.8 million triangles would take 120 MB alone";
 }
 
-/// Copies alone, 32 bytes for each of 9.6 million triangles, would fit in a gibibyte; what each command needs of them
-/// besides would not.
+/// The copies alone, 32 bytes for each of 9.6 million triangles, would fit into a gibibyte; with what each command
+/// needs for them they do not.
 TEST_F(MemoryFaults, EveryCommandThatCopiesCountsWhatItNeedsOfCopies) {
   if (kSanitized) GTEST_SKIP() << "a sanitizer takes terabytes of addresses when it starts";
   const std::string scene =
@@ -130,7 +131,7 @@ TEST_F(MemoryFaults, ControlGroupsCount) {
   write("proc/meminfo", "MemTotal: 9000 kB\nMemFree: 10 kB\nMemAvailable: 8000 kB\n");
   write("proc/self/statm", "100 10 5 1 0 20 0\n");
   EXPECT_EQ(room(), 8000u * 1024);
-  // Version 2: the narrowest from the own group to the root; pages of files are given back.
+  // Version 2: the tightest limit from the process's own group to the root counts; pages of files count as free.
   write("proc/self/cgroup", "0::/a/b\n");
   write("sys/fs/cgroup/a/b/memory.max", "max\n");
   write("sys/fs/cgroup/a/b/memory.current", "5000\n");
@@ -152,7 +153,7 @@ TEST_F(MemoryFaults, ControlGroupsCount) {
 }
 
 TEST_F(MemoryFaults, AMessageIsMoreThanBadAlloc) {
-  // A header that promises more than any machine has.
+  // A header that announces more than any machine has.
   write("bomb.ply",
         "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n"
         "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n");

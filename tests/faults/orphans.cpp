@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program may be killed at any moment, above all when it has just started the helper that reads foreign files: the
-// helper ends with it.
+// Tests that the helper that reads foreign files ends with the program, which may be killed at any moment, above all
+// when it has just started the helper.
 #include "tests/faults/child.hpp"
 
 #include <chrono>
@@ -21,11 +21,12 @@ class OrphanFaults : public FaultTest {
   struct Counts {
     int runs = 0;
     int orphans = 0;   ///< helpers that were alive when the program was killed
-    int finished = 0;  ///< of these, those that went on to the end of their work
+    int finished = 0;  ///< how many of these went on to the end of their work
   };
 
   Counts kill_while_reading(int runs, int signal) const {
-    // Takes long even where this test has to wait for a processor: a helper that is done before the kill tells nothing.
+    // This takes long even if the test has to wait for a processor: a helper that is done before the kill shows
+    // nothing.
     const std::string scene = slow_scene(1'000'000);
     std::mt19937 random(static_cast<unsigned>(signal));
     Counts counts;
@@ -39,7 +40,7 @@ class OrphanFaults : public FaultTest {
       int status = 0;
       if (::waitpid(*helper, &status, 0) != *helper) continue;  // the program had reaped it
       ++counts.orphans;
-      // A helper that finds its asker gone returns 130; one that goes on writes its answer to nobody.
+      // A helper whose parent is gone returns 130; one that continues writes its result to nobody.
       const bool ended_with_it = (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL) ||
                                  (WIFEXITED(status) && (WEXITSTATUS(status) == 130 || WEXITSTATUS(status) == 127));
       if (!ended_with_it) ++counts.finished;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// No output is written to a file that the command reads, and no two outputs to one file, whatever they are called:
-// exit code 2 with both names, and every file as it was.
+// Tests that no output is written to a file that the command reads, and no two outputs to one file, whatever their
+// names: exit code 2 with both names, and every file unchanged.
 #include "base/exr.hpp"
 #include "tests/faults/child.hpp"
 
@@ -138,7 +138,7 @@ TEST_F(OutputFaults, NoTwoOutputsAreOneFile) {
                  path("dir/metrics.json"));
   expect_refused({"compare", path("s.json"), "-o", path("dir"), "--stats", path("dir/reference.exr")}, "--stats",
                  path("dir/reference.exr"));
-  // Frames are files of their own.
+  // Frames are separate files.
   expect_refused(
       with({"render", path("s.json"), "-o", path("f.exr"), "--frames", "1-3"}, {"--bits", path("f.####.exr")}),
       "--bits", path("f.0001.exr"));
@@ -187,7 +187,7 @@ TEST_F(OutputFaults, WhatACommandWritesBesideItsOutputCountsToo) {
   write("s.json", scene.replace(scene.find("t.exr"), 5, "x-light0.exr"));
   expect_refused({"convert", path("s.json"), "-o", path("x.json")}, path("x.json").substr(0, path("x.json").size() - 5),
                  "x-light0.exr");
-  // compare's folder may be the scene's.
+  // compare's folder may be the scene's folder.
   write("metrics.json", read("s.json"));
   expect_refused({"compare", path("metrics.json"), "-o", folder_.string()}, "-o", path("metrics.json"));
   std::filesystem::rename(folder_ / "x-light0.exr", folder_ / "reference.exr");

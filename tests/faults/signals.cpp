@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SIGINT and SIGTERM end every command within two seconds, whatever it is doing, with 130, and nothing is left of what
-// it was writing.
+// Tests that SIGINT and SIGTERM end every command with code 130 within two seconds, whatever it is doing, and that
+// nothing is left of what it was writing.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ using Clock = std::chrono::steady_clock;
 
 class SignalFaults : public FaultTest {
  protected:
-  /// The contract's two seconds; sanitizers make everything slower.
+  /// The documented two seconds; sanitizers make everything slower.
   static constexpr double kSeconds = kSanitized ? 10 : 2;
 
   /// Sends a signal as soon as `now()`, and expects the end soon after it.
@@ -37,7 +37,7 @@ class SignalFaults : public FaultTest {
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - sent).count(), kSeconds);
     EXPECT_THAT(ending.err, HasSubstr("interrupted"));
   }
-  /// A file is being written, whose name it will get in the end is not there yet.
+  /// Returns whether a file is being written that does not have its final name yet.
   [[nodiscard]] bool is_writing() const {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_)) {
       if (entry.path().filename().string().find(".part") != std::string::npos) return true;
@@ -57,7 +57,7 @@ class SignalFaults : public FaultTest {
                                                  path("out.json"), "--method", "raytrace", "--light-samples", "1",
                                                  "--size", size}};
     for (const int signal : {SIGINT, SIGTERM}) {
-      // The bits come first, tile by tile; the second file is the picture.
+      // The bits are written first, tile by tile; the second file is the picture.
       interrupt_when(conditions, signal, [this] { return is_writing(); });
       expect_nothing_but_inputs({"scene.json"});
       interrupt_when(conditions, signal, [this] {
@@ -68,7 +68,7 @@ class SignalFaults : public FaultTest {
       expect_nothing_but_inputs({"scene.json"});
     }
   }
-  /// A grid of so many triangles a side, which takes a while to write as text.
+  /// A grid of `side` squares a side, which takes a while to write as text.
   [[nodiscard]] std::string grid(int side) const {
     std::ofstream mesh(path("grid.obj"));
     for (int y = 0; y <= side; ++y) {

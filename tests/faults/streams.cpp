@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Standard streams that are closed, full, or read by nobody: a documented exit code, and output files as usual.
+// Tests standard streams that are closed, full, or not read: a documented exit code, and output files as usual.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>

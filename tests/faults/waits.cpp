@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device that takes work and does not finish it: the program still ends, and in an orderly way.
+// Tests a device that takes work and does not finish it: the program still ends, in an orderly way.
 #include "tests/faults/child.hpp"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 class WaitFaults : public FaultTest {
  protected:
-  /// Work of minutes in few submissions for Mesa's driver for processors, with one thread.
+  /// Work of minutes in few submissions for Mesa's software driver with one thread.
   [[nodiscard]] Conditions long_work() const {
     return {.arguments = {"render", small_scene(), "-o", path("out.exr"), "--bits", path("out.bits"), "--method",
                           "depth-complexity", "--method-option", "engine=vulkan", "--size", "2048x2048",
@@ -39,7 +39,7 @@ TEST_F(WaitFaults, ALimitThatIsNoneIs2) {
   }
 }
 
-/// Waits on Mesa's driver for processors, whose threads do nothing here.
+/// Waits on Mesa's software driver, whose threads do nothing in these tests.
 class LongWaitFaults : public WaitFaults {};
 
 TEST_F(LongWaitFaults, ADeviceThatDoesNothingIs4) {
@@ -53,7 +53,7 @@ TEST_F(LongWaitFaults, ADeviceThatDoesNothingIs4) {
 }
 
 TEST_F(LongWaitFaults, CompareKeepsWhatCameBefore) {
-  // The first method has work of milliseconds, the second of a minute in one submission.
+  // The first method takes milliseconds, the second a minute in one submission.
   const Ending ending = run_under(
       {.arguments = {"compare", small_scene(), "-o", path("dir"), "--size", "512x512", "--light-samples", "4096",
                      "--reference", "exact", "--sample-pixels", "4", "--methods",

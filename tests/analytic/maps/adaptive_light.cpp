@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// adaptive-light's V: against accumulate on the same points, and against areas in closed form.
+// Tests adaptive-light's V against accumulate on the same points, and against areas in closed form.
 
 #include "tests/analytic/maps/adaptive_light.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
@@ -20,7 +20,7 @@ TEST_F(AdaptiveLight, WithoutToleranceIsAccumulateOverTheCornersOfAllCells) {
                 both = sphere_scene(0.5);
   disk.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.5};
   polygon.lights.front().shape = scenes::Polygon{{{-0.6, 5, -0.5}, {0.5, 5, -0.4}, {0.2, 5, 0.6}}};
-  add_quad(room, {4, 3, 0}, {0, 3, 0}, {0, 0, 4});  // up to beyond the light: hemicubes
+  add_quad(room, {4, 3, 0}, {0, 3, 0}, {0, 0, 4});  // reaches above the light, so that its maps are hemicubes
   add_quad(both, {0, 9, 0}, {3, 0, 0}, {0, 0, 3});
   both.lights.front().two_sided = true;
   scenes::Scene ellipse = sphere_scene(0.5);
@@ -52,13 +52,13 @@ TEST_F(AdaptiveLight, OnALineIsAccumulateOverItsPoints) {
   EXPECT_EQ(adaptive(stage, {{"levels", "3"}, {"epsilon", "1"}, {"form", "line"}}).maps, 2U);
 }
 
-// D4: of n points in a row with equal weights the outermost count as much as all others, though they stand for half as
-// much of the light. Over the penumbra of a straight edge V is a ramp, and the root of the mean square error is a sum
-// of steps'.
+// Row D4 of docs/predicates.md: with equal weights, the outermost of n points in a row count as much as all others,
+// though they stand for half as much of the light. Over the penumbra of a straight edge V is a ramp; n points give
+// steps instead, whose root mean square error follows in closed form.
 TEST_F(AdaptiveLight, CornersAreNotTheLightsMean) {
   scenes::Scene scene = bare_floor(1, 1.5);
   scene.lights.front() = rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.001});
-  add_quad(scene, {1.5, 2.5, 0}, {1.5, 0, 0}, {0, 0, -1}).receives_shadow = false;  // from x = 0 on
+  add_quad(scene, {1.5, 2.5, 0}, {1.5, 0, 0}, {0, 0, -1}).receives_shadow = false;  // occupies x > 0
   constexpr int kPlaces = 400;
   std::vector<double> places;
   for (int i = 0; i < kPlaces; ++i) places.push_back(-1 + (2 * i + 1.0) / kPlaces);
@@ -68,7 +68,7 @@ TEST_F(AdaptiveLight, CornersAreNotTheLightsMean) {
     for (std::size_t i = 0; i < places.size(); ++i) sum += std::pow(v(i) - (1 - places[i]) / 2, 2);
     return std::sqrt(sum / kPlaces);
   };
-  // Points from -1 to 1 of which those at less than -x are seen: each with its weight.
+  // V of nine points from -1 to 1, each with its weight; those at less than -x are visible.
   const auto steps = [&](const std::function<double(int)>& weight, const std::function<double(int)>& at) {
     return off([&](std::size_t i) {
       double v = 0;
@@ -94,9 +94,9 @@ TEST_F(AdaptiveLight, CornersAreNotTheLightsMean) {
   const Masks accumulated = run(maps::make_accumulate, stage, {{"size", "2048"}});
   const double found_cells = off([&](std::size_t i) { return static_cast<double>(accumulated.visibility[i]); });
   fmt::print("nine points: equal {:.4f}, area {:.4f}, cells {:.4f}\n", found("equal"), found("area"), found_cells);
-  // A step is half a texel of 1.2 / 2046 off on the map, and a texel 2.5 · 2 as wide on the floor, of a penumbra 2
-  // wide; the places are 1/200 apart. A step of 1/9 that is off by d is wrong by 1/9 over d: 9 of them move the mean
-  // square by 9 · 2 · the error there · d / 9.
+  // A step is off by half a texel, which is 1.2 / 2046 wide in the map and 2.5 · 2 times that on the floor, in a
+  // penumbra 2 wide; the places are 1/200 apart. Where a step of 1/9 is off by d, V is wrong by 1/9 over the length d:
+  // nine such steps move the mean square by 9 · 2 · the error there · d / 9.
   const double shift = 0.5 * 1.2 / 2046 * 5 + 1.0 / kPlaces, moved = 2 * (1.0 / 9) * shift;
   for (const auto& [measured, expected] :
        {std::pair(found("equal"), equal), {found("area"), trapezoid}, {found_cells, cells}}) {
@@ -126,7 +126,8 @@ TEST_F(AdaptiveLight, WhatEveryPointSeesIsExactlyLitAndTilesChangeNothing) {
   }
 }
 
-// Maps twice as coarse have filters twice as wide: steps between few maps vanish, the penumbra widens (3.4.3).
+// Maps half as fine have filters twice as wide: the steps between few maps vanish, and the penumbra widens (section
+// 3.4.3 of the paper).
 TEST_F(AdaptiveLight, AWiderFilterSmoothsFewMapsAndWidensThePenumbra) {
   const Stage stage(sphere_scene(0.1), 96, 96, light_samples(1));
   const Masks truth = exact(stage);
@@ -152,23 +153,23 @@ TEST_F(AdaptiveLight, AWiderFilterSmoothsFewMapsAndWidensThePenumbra) {
   EXPECT_GT(last, penumbra(truth));
 }
 
-// One map of a half-plane, from a point: over the floor the filter is a ramp as wide as its texels. A square n - 1
-// texels wide around the receiver, of which each texel counts as much as it overlaps: lit is what of it is beyond the
-// edge, which the map has between two texels.
+// One map of a half-plane, from a point light. The filter is a square n - 1 texels wide around the receiver, in which
+// each texel counts by its overlap. V is the part of this square beyond the edge, which the map places between two
+// texels: over the floor, a ramp as wide as the square.
 TEST_F(AdaptiveLight, AFilterOfNTexelsIsARampOfNLessOne) {
   scenes::Scene scene = bare_floor(1e-4, 1.5);
-  add_quad(scene, {1.5, 2.5, 0}, {1.5, 0, 0}, {0, 0, -2}).receives_shadow = false;  // from x = 0 on
+  add_quad(scene, {1.5, 2.5, 0}, {1.5, 0, 0}, {0, 0, -2}).receives_shadow = false;  // occupies x > 0
   constexpr int kPlaces = 256;
   std::vector<double> places;
   for (int i = 0; i < kPlaces; ++i) places.push_back(-0.6 + 1.2 * (i + 0.5) / kPlaces);
   const Stage stage = along_floor(scene, places, light_samples(1));
   for (const int n : {3, 4, 5, 9, 17}) {
-    // The window holds the floor (tangents of 0.3 on either side), and boards half the filter beside it: how wide its
-    // texels are is found from the ramp, and is no more than that.
+    // The window holds the floor (tangents of 0.3 on either side) and the board within half a filter's width of it. The
+    // width of its texels is found from the ramp; this is its upper bound.
     const Run found =
         adaptive(stage, {{"epsilon", "1"}, {"pcf", fmt::format("{}", n)}, {"size", "256"}, {"form", "line"}});
     std::vector<double> v(found.picture.visibility.begin(), found.picture.visibility.end());
-    double from = 1, to = -1;  // where the ramp is between 1/8 and 7/8
+    double from = 1, to = -1;  // the ramp's part between 1/8 and 7/8
     for (int i = 0; i < kPlaces; ++i) {
       const auto k = static_cast<std::size_t>(i);
       EXPECT_LE(v[k], i > 0 ? v[k - 1] + 1e-6 : 1.0) << n;
@@ -188,9 +189,9 @@ TEST_F(AdaptiveLight, AFilterOfNTexelsIsARampOfNLessOne) {
   }
 }
 
-// Equation 3: heights are compared in parts of all that a map can hold, wherever they are. A board 4 below the light
-// and a floor 5 below it differ by 1 / 5 or 1 / 4 of their heights, and by 1 of a range that is no less than the
-// distance from the light's corner to the floor's far one.
+// Equation 3: differences of heights are relative to the heights, or to the whole range that a map can hold. A board 4
+// below the light and a floor 5 below it differ by 1 / 5 or 1 / 4 of their heights, and by 1 / range, where the range
+// is at least the distance from the light's corner to the floor's far corner.
 TEST_F(AdaptiveLight, GammaIsAShareOfHeightsOrOfAMapsRange) {
   scenes::Scene scene = bare_floor(1, 1.5);
   scene.objects.front().casts_shadow = true;
@@ -203,18 +204,18 @@ TEST_F(AdaptiveLight, GammaIsAShareOfHeightsOrOfAMapsRange) {
   fmt::print("maps: {} and {}\n", few, many);
   EXPECT_EQ(few, 4U);
   EXPECT_GT(many, few);
-  const double range = std::sqrt(5 * 5 + 2 * 2.5 * 2.5);  // a map's range is no less
+  const double range = std::sqrt(5 * 5 + 2 * 2.5 * 2.5);  // a map's range is at least this
   EXPECT_EQ(maps("range", 0.05), many);
   EXPECT_EQ(maps("height", 0.195), many);
   EXPECT_EQ(maps("range", 1 / range + 0.001), few);
   EXPECT_LT(1 / range + 0.001, 0.195);
 }
 
-// An edge under one side of the light refines that side alone: equal weights then count it too often.
+// An edge under one side of the light refines only that side: with equal weights, that side then counts too much.
 TEST_F(AdaptiveLight, ThePapersWeightsAreNearerToTheTruthThanEqualOnes) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {0.4, 0, 0}, {0, 0, -0.4});
-  // The board hides, as seen from the floor's middle, the light beyond x = 0.8, of 1.
+  // Seen from the floor's middle, the board hides the light beyond x = 0.8; the light ends at x = 1.
   add_quad(scene, {4.4, 2.5, 0}, {4, 0, 0}, {0, 0, 6}).receives_shadow = false;
   scene.lights.push_back(ceiling_light(5, 1));
   scene.cameras.push_back(camera({0, 1.5, 0}, {0, 0, -0.001}, 20));
@@ -248,19 +249,19 @@ TEST_F(AdaptiveLight, ATextureWeighsTheMaps) {
   double worst = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
     if (!square.on_floor(i)) continue;
-    // p sees the light beyond x_l = p.x + (1 - p.x) 5/2, here of 0 ... 1.
+    // p sees the light beyond x_l = p.x + (1 - p.x) 5/2; the light's lit half is x_l from 0 to 1.
     const double x = static_cast<double>(stage.samples.p[i].x) + stage.floats.origin.x, edge = x + (1 - x) * 2.5;
     const double truth = 1 - std::clamp(edge, 0.0, 1.0);
     worst = std::max(worst, std::abs(static_cast<double>(found.picture.visibility[i]) - truth));
   }
-  // The trapezoidal rule with 8 cells over the lit half is off by half of one where the edge is, and by half a texel's
-  // width of the map, 2 . 5/3 / 2 of 8/126 on a light 1 wide.
+  // The trapezoidal rule with 8 cells over the lit half is off by half a cell at the edge. The map adds half the width
+  // of one of its texels, 2 . 5/3 / 2 of 8/126, on a light 1 wide.
   EXPECT_LT(worst, 0.5 / 8 + 0.5 * 8.0 / 126 * (5.0 / 3) + 0.02);
 }
 
-// Each point weighs what light its cells have, a quarter of each cell's (of a line a half): a texture's texels and
-// cells are cut into 12 x 20 (1 x 40) pieces that both hold whole. Hard shadows are accumulate's bits from the same
-// points.
+// Each point weighs a quarter of the light of each adjacent cell (on a line, half of it). For the expected weights the
+// texture is cut into 12 x 20 pieces (on a line 3 x 40), of which both texels and cells hold whole numbers. The hard
+// shadows must be accumulate's bits for the same points.
 TEST_F(AdaptiveLight, TexturesWeighPointsByTheLightOfTheirCells) {
   for (const bool line : {false, true}) {
     scenes::Scene scene = sphere_scene(0.5);

@@ -35,7 +35,7 @@ class AdaptiveLight : public MapsTest {
     result.comparisons = counters.at("comparisons");
     return result;
   }
-  /// A sphere of radius 1 over a floor, the light 3 above its centre; the camera `away` times as far as it could be.
+  /// A sphere of radius 1 over a floor, the light 3 above its centre; `away` multiplies the camera's distance.
   static scenes::Scene sphere_scene(double half, double away = 1) {
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});
@@ -44,7 +44,7 @@ class AdaptiveLight : public MapsTest {
     scene.cameras.push_back(camera(away * glm::dvec3(0, 4, 7), {0, 0.5, 0}, 60));
     return scene;
   }
-  /// The points that a wholly refined light has, in the order of `tree`-less rows.
+  /// The points of a fully refined light, in rows.
   static std::vector<glm::vec3> corner_grid(const visibility::Light& light, int across) {
     const maps::LightSquare square(light);
     std::vector<glm::vec3> points;

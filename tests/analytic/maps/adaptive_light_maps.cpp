@@ -41,12 +41,12 @@ TEST_F(AdaptiveLight, FewerMapsForLargerTolerances) {
   EXPECT_GT(bounded, 20U - 5);
 }
 
-// Equation 7 at one pixel: two boards whose heights under the light are as 1 : 1.1 and that one corner each sees.
+// Equation 7 at one pixel: two boards whose distances from the light are as 1 : 1.1, each of them seen from one corner.
 TEST_F(AdaptiveLight, HeightsDifferFromGammaOn) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {0.5, 0, 0}, {0, 0, -0.5});
-  // The light at 5 is 2 wide on its line along x. Toward its left end the floor sees a board at 2, toward the right end
-  // one at 2.3: 3 and 2.7 below the light.
+  // The light, at height 5, is 2 wide along x. In the direction of its left end the floor sees a board at 2, in that of
+  // its right end one at 2.3: 3 and 2.7 below the light.
   add_quad(scene, {-4.2, 2, 0}, {4, 0, 0}, {0, 0, 4}).receives_shadow = false;
   add_quad(scene, {4.2, 2.3, 0}, {4, 0, 0}, {0, 0, 4}).receives_shadow = false;
   scene.lights.push_back(rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.1}));
@@ -62,7 +62,7 @@ TEST_F(AdaptiveLight, HeightsDifferFromGammaOn) {
                             {"bias", "0.1"}})
         .maps;
   };
-  // |1 - 3 / 2.7| = 0.111: the first of a pair is the one at the lower coordinate.
+  // |1 - 3 / 2.7| = 0.111: the first point of a pair is the one with the lower coordinate.
   EXPECT_EQ(maps("0.110"), 3U);
   EXPECT_EQ(maps("0.112"), 2U);
   EXPECT_EQ(maps("0.110", "1"), 3U) << "all pixels differ: not less than all of them";
@@ -70,13 +70,13 @@ TEST_F(AdaptiveLight, HeightsDifferFromGammaOn) {
 
 TEST_F(AdaptiveLight, EpsilonIsAShareOfTheMapsTexelsOrOfThePixels) {
   const Stage stage(sphere_scene(0.5), 48, 48, light_samples(4));
-  // 48^2 pixels are 0.1406 of 128^2 texels: as a share of the texels no more can differ.
+  // 48^2 pixels are 0.1406 of 128^2 texels, so that no larger share of the texels can differ.
   EXPECT_EQ(adaptive(stage, {{"epsilon", "0.141"}, {"gamma", "0"}}).maps, 4U);
   EXPECT_EQ(adaptive(stage, {{"epsilon", "0.141"}, {"gamma", "0"}, {"shareOf", "pixels"}}).maps, 81U);
 }
 
-// A camera far away sees few pixels of penumbra: the paper's own failure (5.1). Compared from the light nothing
-// changes.
+// A camera far away sees few pixels of penumbra, so the published criterion stops too early (section 5.1 of the paper).
+// Compared from the light, the camera's distance makes no difference.
 TEST_F(AdaptiveLight, FromFarAwayOnlyTheLightsOwnViewRefines) {
   const Stage near(sphere_scene(0.5), 64, 64, light_samples(4)), far(sphere_scene(0.5, 4), 64, 64, light_samples(4));
   const MethodOptions camera{{"epsilon", "0.007"}}, light{{"epsilon", "0.007"}, {"compare", "light"}};
@@ -99,7 +99,7 @@ TEST_F(AdaptiveLight, FromFarAwayOnlyTheLightsOwnViewRefines) {
   EXPECT_GT(far_error, 2 * near_error);
 }
 
-// Fewer maps than 128 fixed ones are as good where penumbrae are small; larger lights need more maps.
+// Where penumbrae are small, fewer adaptive maps are as good as 128 fixed ones; larger lights need more maps.
 TEST_F(AdaptiveLight, MapsGrowWithThePenumbraAndAreFewForSmallLights) {
   std::uint64_t last = 4;
   for (const double half : {0.1, 0.5, 2.0}) {
@@ -141,8 +141,8 @@ TEST_F(AdaptiveLight, ATiltedReceiverNeedsMoreMaps) {
   EXPECT_GT(last, 14U);
 }
 
-// By default epsilon is a share of the pixels. The paper's is a share of a map's texels, which is more pixels than
-// small pictures have: they keep their four maps.
+// By default epsilon is a share of the pixels. In the paper it is a share of a map's texels, which can be more pixels
+// than a small picture has: such pictures keep their four maps.
 TEST_F(AdaptiveLight, ByDefaultPicturesOfAnySizeAreRefinedAlike) {
   for (const double half : {0.04, 0.15}) {
     std::vector<std::uint64_t> found, published;
@@ -162,15 +162,16 @@ TEST_F(AdaptiveLight, ByDefaultPicturesOfAnySizeAreRefinedAlike) {
   }
 }
 
-// Reeves, Salesin and Cook 1987: between the four texels around a receiver hard shadows are bilinear. Of a light
-// without size all maps are one, and under a half-plane V is a ramp between the two columns that its edge parts.
+// Reeves, Salesin and Cook 1987: hard shadows are interpolated bilinearly between the four texels around a receiver.
+// For a light without size all maps are equal, and under a half-plane V is a ramp between the two columns of texels on
+// either side of its edge.
 TEST_F(AdaptiveLight, TheFilterIsARampBetweenTwoTexels) {
   constexpr std::uint32_t kSize = 64;
   for (const bool along_z : {false, true}) {
     scenes::Scene scene = bare_floor(1e-6, 2);
     const glm::dvec3 away = along_z ? glm::dvec3(0, 0, 3) : glm::dvec3(3, 0, 0),
                      along = along_z ? glm::dvec3(3, 0, 0) : glm::dvec3(0, 0, 3);
-    add_quad(scene, glm::dvec3(0, 2, 0) + away, away, along).receives_shadow = false;  // from 0 on
+    add_quad(scene, glm::dvec3(0, 2, 0) + away, away, along).receives_shadow = false;  // occupies the side beyond 0
     const auto places = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
       visibility::ViewSamples samples;
       samples.width = 300;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Small scenes for methods that project maps back onto the light: the light at height 5, the floor at 0, casters
-// between that receive nothing, so that every receiver is well behind all casters.
+// Small scenes for methods that project maps back onto the light. The light is at height 5, the floor at 0, and casters
+// in between receive nothing, so that every receiver is well below all casters.
 
 #include "tests/analytic/maps/fixture.hpp"
 
@@ -14,13 +14,13 @@ namespace penumbra::tests {
 inline scenes::Scene bare_floor(double light_half, double floor_half = 2) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {floor_half, 0, 0}, {0, 0, -floor_half}).casts_shadow = false;
-  scene.soup.positions.emplace_back(0, 4.5, 0);  // above all casters: one origin whatever they are
+  scene.soup.positions.emplace_back(0, 4.5, 0);  // above all casters, so that the origin does not depend on them
   scene.lights.push_back(ceiling_light(5, light_half));
   scene.cameras.push_back(camera({0, 4, 4}, {0, 0, 0}));
   return scene;
 }
 
-/// View samples spread over the floor, which no camera above the casters sees: `side` × `side` of them.
+/// A grid of `side` × `side` view samples over the floor, which a camera above the casters would not see.
 inline Stage on_floor(const scenes::Scene& scene, std::uint32_t side, const visibility::SampleRequest& request) {
   const auto grid = [side](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
     double half = 0;
@@ -44,7 +44,7 @@ inline Stage on_floor(const scenes::Scene& scene, std::uint32_t side, const visi
   return {scene, side, side, request, grid};
 }
 
-/// View samples on the floor along x at these places, a little beside the middle.
+/// View samples on the floor at these x, slightly off the middle in z.
 inline Stage along_floor(const scenes::Scene& scene, const std::vector<double>& places,
                          const visibility::SampleRequest& request) {
   const auto line = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
@@ -88,8 +88,8 @@ inline scenes::Scene oblique_quad(double turn = 0) {
   return scene;
 }
 
-/// Two plates that the light's centre cannot tell apart from one whole one and one half: with a gap that other points
-/// of the light see through (`gap`), or without.
+/// Two plates that look the same to the light's centre in both variants: with a gap that other points of the light see
+/// through (`gap`), or without one.
 inline scenes::Scene plates_with_gap(bool gap) {
   scenes::Scene scene = bare_floor(0.6);
   add_quad(scene, {-1, 3.5, 0}, {1, 0, 0}, {0, 0, -2}).receives_shadow = false;
@@ -101,7 +101,7 @@ inline scenes::Scene plates_with_gap(bool gap) {
   return scene;
 }
 
-/// An upright box, `aside` of the light.
+/// An upright box, moved by `aside` in x.
 inline scenes::Scene box_over_floor(double aside = 0, double light_half = 0.5) {
   scenes::Scene scene = bare_floor(light_half);
   const auto side = [&](const glm::dvec3& at, const glm::dvec3& u, const glm::dvec3& v) {

@@ -8,8 +8,8 @@ uint fetches = 0;
 #define PREFILTER_FIRST 4
 #include "maps/products/prefilter.glsl"
 
-// Means of function first_point over boxes of one face, and how many words each took. Boxes come as receivers: p.xy to n.xy, of which
-// the share p.z is in the map.
+// Computes means of the function `first_point` over boxes of one face, and how many words each took. Boxes are passed as receivers: from p.xy to
+// n.xy; the share p.z is in the map.
 void main() {
   const uint i = this_receiver();
   if (i >= lookup.receiver_count) return;

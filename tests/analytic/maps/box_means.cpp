@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means over boxes of prefiltered texels, as look-ups take them: against sums over texels in double, and by how many
-// words of memory each takes, whatever the box's size (Eisemann et al. 2009, sections 5.2.2.3 and 5.2.5).
+// Tests means of prefiltered texels over boxes, as look-ups read them: against sums over texels in double, and by the
+// number of words that each reads, which must not depend on the box's size (Eisemann et al. 2009, sections 5.2.2.3 and
+// 5.2.5).
 
 #include "maps/products/prefilter.hpp"
 #include "tests/analytic/maps/box_means.comp.spv.hpp"
@@ -24,7 +25,7 @@ struct TexelBox {
   [[nodiscard]] glm::dvec2 extent() const { return upper - lower; }
 };
 
-/// Words that are there.
+/// A map product of given words.
 class Words final : public maps::MapProduct {
  public:
   Words(const render::Device& device, const std::vector<std::uint32_t>& words)
@@ -36,19 +37,19 @@ class Words final : public maps::MapProduct {
   render::Buffer words_;
 };
 
-/// A picture of zeros and ones, and what its means are.
+/// A picture of zeros and ones, and its exact means.
 class Picture {
  public:
   Picture(std::uint32_t size, std::uint32_t seed) : size_(size), texels_(std::size_t{size} * size) {
     std::mt19937 random(seed);
-    // Zeros and ones in patches: a picture of noise has the same mean everywhere.
+    // Zeros and ones are in patches, because a picture of noise would have the same mean everywhere.
     for (std::uint32_t i = 0; i < texels_.size(); ++i) {
       const std::uint32_t x = i % size, y = i / size;
       texels_[i] = random() % 8 < (x * x / 97 + y * y / 53 + x * y / 71) % 9 ? 1 : 0;
     }
   }
   [[nodiscard]] const std::vector<std::uint32_t>& texels() const { return texels_; }
-  /// Texels at a box's border by the share of them that it holds.
+  /// Returns the mean; a texel on the box's border counts by the share of it that is inside.
   [[nodiscard]] double mean(const TexelBox& box) const {
     double sum = 0;
     for (auto y = static_cast<std::uint32_t>(box.lower.y); y < box.upper.y; ++y) {
@@ -59,8 +60,8 @@ class Picture {
     }
     return sum / (box.extent().x * box.extent().y);
   }
-  /// Squares of the largest power of two that fits into the box, spread evenly over it, no more than eight along an
-  /// axis.
+  /// Returns the mean over squares (their side is the largest power of two that fits into the box) spread evenly over
+  /// it, at most eight along an axis.
   [[nodiscard]] double of_squares(const TexelBox& box) const {
     const glm::dvec2 extent = glm::max(box.extent(), glm::dvec2(1));
     const double side = std::exp2(std::floor(std::log2(std::min(extent.x, extent.y))));
@@ -75,8 +76,8 @@ class Picture {
     }
     return sum / (count.x * count.y);
   }
-  /// Returns the mean between the two mip levels whose texels' areas enclose the box's, in each between the four texels
-  /// around its middle. For sizes that are powers of two.
+  /// Returns the mean between the two mip levels whose texels' areas enclose the box's; in each level it interpolates
+  /// between the four texels around the box's middle. For sizes that are powers of two.
   [[nodiscard]] double of_levels(const TexelBox& box) const {
     const glm::dvec2 extent = glm::max(box.extent(), glm::dvec2(1)), middle = 0.5 * (box.lower + box.upper);
     const double level = std::min(0.5 * std::log2(extent.x * extent.y), std::log2(size_));
@@ -105,8 +106,8 @@ class BoxMeans : public MapsTest {
     double mean;
     std::uint32_t fetches;
   };
-  /// Returns means of a picture's bit, `function` of several functions, in buffers of `buffer_bytes` (0: as large as
-  /// may be).
+  /// Returns means of a picture's bits, which are function number `function` of several, in buffers of `buffer_bytes`
+  /// (0: as large as possible).
   static std::vector<Found> means(const Picture& picture, maps::PrefilterKind kind, const std::vector<TexelBox>& boxes,
                                   std::uint32_t function = 0, std::uint64_t buffer_bytes = 0) {
     scenes::Scene scene;
@@ -148,14 +149,14 @@ class BoxMeans : public MapsTest {
       found.push_back({std::bit_cast<float>(read[2 * i]), read[2 * i + 1]});
     return found;
   }
-  /// Anywhere in the picture: of one size after the other, `aspect` times as wide as high or as high as wide.
+  /// Returns boxes of random places and sizes, alternately `aspect` times as wide as high and as high as wide.
   static std::vector<TexelBox> boxes(double aspect, std::uint32_t count) {
     std::mt19937 random(11);
     const auto number = [&](double to) { return std::uniform_real_distribution<double>(0, to)(random); };
     std::vector<TexelBox> boxes;
     while (boxes.size() < count) {
       const double octaves = number(std::floor(std::log2(kSize / aspect))), high = std::exp2(octaves);
-      if (std::abs(octaves - std::round(octaves)) < 1e-4) continue;  // a device's logarithm may say either
+      if (std::abs(octaves - std::round(octaves)) < 1e-4) continue;  // a device's logarithm may round either way
       const glm::dvec2 extent =
           boxes.size() % 2 == 0 ? glm::dvec2(aspect * high, high) : glm::dvec2(high, aspect * high);
       const glm::dvec2 lower(number(kSize - extent.x), number(kSize - extent.y));
@@ -165,7 +166,7 @@ class BoxMeans : public MapsTest {
   }
 };
 
-// Places of a box in 128 texels are floats of 2^-17; its mean is off by that over its extent, and by sums of floats.
+// Coordinates of a box in 128 texels are floats of 2^-17; its mean is off by that over its extent, and by rounded sums.
 TEST_F(BoxMeans, AreSumsOverTexelsInEachScheme) {
   const Picture picture(kSize, 3);
   for (const double aspect : {1.0, 3.0, 11.0}) {
@@ -191,9 +192,9 @@ TEST_F(BoxMeans, AreSumsOverTexelsInEachScheme) {
   }
 }
 
-// I24: what a mean takes does not depend on the box's size, and so not on the light's. Of summed areas 16 words, those
-// beyond the map's border left out; of mip levels four in each of two; of an N-buffer four for each of two by two
-// squares, or of twice as many as the box is longer than wide.
+// Row I24 of docs/predicates.md: the cost of a mean does not depend on the box's size, and so not on the light's.
+// Summed areas take 16 words, less those beyond the map's border; mip levels take four in each of two levels; an
+// N-buffer takes four for each of two by two squares, or more squares in proportion to the box's aspect.
 TEST_F(BoxMeans, TakeAsManyFetchesWhateverTheBoxesSize) {
   const Picture picture(kSize, 3);
   for (const double aspect : {1.0, 3.0}) {
@@ -216,7 +217,7 @@ TEST_F(BoxMeans, TakeAsManyFetchesWhateverTheBoxesSize) {
   }
 }
 
-// Look-ups of what is in one buffer are other code than those of what is in four.
+// Look-ups in one buffer and in four are different code.
 TEST_F(BoxMeans, AreTheSameInOneBufferAndInFour) {
   const Picture picture(kSize, 3);
   const std::vector<TexelBox> asked = boxes(1, 200);
@@ -226,7 +227,7 @@ TEST_F(BoxMeans, AreTheSameInOneBufferAndInFour) {
     const std::uint64_t two_functions = std::uint64_t{2} * words * sizeof(std::uint32_t);
     const std::vector<Found> truth = means(picture, kind, asked);
     EXPECT_GT(std::ranges::max(truth, {}, &Found::mean).mean, 0.5);
-    for (std::uint32_t function = 0; function < kFunctions; ++function) {  // 2, 2, 2 and 1
+    for (std::uint32_t function = 0; function < kFunctions; ++function) {  // functions per buffer: 2, 2, 2 and 1
       for (const std::uint64_t buffer_bytes : {std::uint64_t{0}, two_functions}) {
         const std::vector<Found> found = means(picture, kind, asked, function, buffer_bytes);
         for (std::size_t i = 0; i < asked.size(); ++i)
@@ -236,8 +237,8 @@ TEST_F(BoxMeans, AreTheSameInOneBufferAndInFour) {
   }
 }
 
-// The window of a receiver on a wall, on a sideways face of a hemicube, is the box around the four corners of the
-// light's box. The formula is of first order: for boxes as small as these it is off by less than 1 %.
+// For a receiver on a wall, whose map is a sideways face of a hemicube, the window is the box around the four corners
+// of the light's box. The formula is of first order: for boxes this small it is off by less than 1 %.
 TEST_F(BoxMeans, WindowsOnSidewaysFacesHoldTheCornersOfTheLightsBox) {
   constexpr std::uint32_t kTexels = 8192;
   maps::gpu::LightView view{};
@@ -246,7 +247,7 @@ TEST_F(BoxMeans, WindowsOnSidewaysFacesHoldTheCornersOfTheLightsBox) {
   const maps::gpu::PrefilterTable table{
       .scheme = 0, .size = kTexels, .faces = 5, .levels = 1, .block = 1, .per_buffer = 1, .value_count = 0};
   std::vector<maps::gpu::Receiver> asked;
-  constexpr double kThrough = 0.999;  // of the receiver's height
+  constexpr double kThrough = 0.999;  // share of the receiver's height
   for (const glm::vec3& d :
        {glm::vec3(2, 0.3, 1), {-2, 1.8, 0.8}, {1.5, -1.4, 1}, {0.3, 2, 1}, {1.9, -2, 0.9}, {-1, 1.4, 1.2}}) {
     for (const glm::vec2& half : {glm::vec2(6, 6), {6, 0}, {0, 6}})

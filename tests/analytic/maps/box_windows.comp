@@ -6,8 +6,8 @@
 #define PREFILTER_FIRST 4
 #include "maps/products/prefilter.glsl"
 
-// The light's box as receivers see it on a map, in texels. What is asked comes as receivers: p is the receiver, n.xy half the
-// box's sides, n.z the height through which it is seen.
+// Computes the light's box as receivers see it on a map, in texels. Requests are passed as receivers: p is the receiver, n.xy half the box's sides,
+// n.z the height through which it is seen.
 void main() {
   const uint i = this_receiver();
   if (i >= lookup.receiver_count) return;

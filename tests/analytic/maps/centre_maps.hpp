@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The maps of a stage's light from its centre, as the self-test makes them; and view samples by hand.
+// The maps of a stage's light from its centre, as in the self-test; and view samples set by hand.
 
 #include "selftest/centre_maps.hpp"
 #include "tests/analytic/maps/fixture.hpp"
 
 namespace penumbra::tests {
 
-/// View samples by hand, on the plane through `middle` spanned by `u` and `v`: n × n, at middle + s u + t v with s and
-/// t in the middle of equal steps from −1 to 1, carried by triangle 0. `up` is their normal.
+/// View samples set by hand on the plane through `middle` spanned by `u` and `v`: n × n of them, at middle + s u + t v,
+/// where s and t are the middles of equal steps from −1 to 1, on triangle 0. `up` is their normal.
 inline auto grid_samples(std::uint32_t n, const glm::dvec3& middle, const glm::dvec3& u, const glm::dvec3& v,
                          const glm::dvec3& up) {
   return [=](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {

@@ -28,7 +28,8 @@ class MapsClosedForm : public MapsTest {
 
 TEST_F(MapsClosedForm, AccumulateConvergesToTheExactCountUnderAParallelSquare) {
   const Stage stage(parallel_square(), 64, 64, light_samples(64));
-  // Pairs differ only in a band along the shadow's edges whose width is a texel's: their share goes with 1 / size.
+  // Pairs differ only in a band along the shadow's edges whose width is a texel's: their share is proportional to 1 /
+  // size.
   const double coarse = differing_share(stage, 64), middle = differing_share(stage, 256),
                fine = differing_share(stage, 1024);
   EXPECT_LT(coarse, 0.01);
@@ -51,7 +52,7 @@ TEST_F(MapsClosedForm, AccumulateDiffersOnlyWithinATexelOfTheHalfPlanesEdge) {
       if (visible == exact.visible(i, j)) continue;
       ++differing;
       const glm::dvec3 p = stage.samples.p[i], l = stage.light.points[j];
-      // Place from which the floor sees l past the edge (x = 1 at height 2 of 5, in world units).
+      // Beyond this x the floor sees l past the edge (x = 1 at height 2 of 5, in world units).
       const double boundary = l.x + (1.0 - stage.floats.origin.x - l.x) * (5.0 / 3.0);
       near += std::abs(p.x - boundary) <= texel ? 1 : 0;
     }
@@ -66,9 +67,9 @@ TEST_F(MapsClosedForm, ShadowMapIsAccumulateWithOneSampleAtTheCentre) {
   const Masks many = run(maps::make_accumulate, stage), hard = run(maps::make_shadow_map, stage);
   EXPECT_EQ(many.visibility, hard.visibility);
   const ParallelSquare exact(stage);
-  // The window holds the floor, ±4 at distance 5, and a texel more on every side. Asked at the texel's centre, half a
-  // texel away along either axis, the map is wrong only there beside the square's outline (half-size 1 at distance 3);
-  // corners are snapped to 1/256 texel.
+  // The window holds the floor, ±4 at distance 5, and a texel more on every side. A receiver reads the texel that
+  // contains it, whose centre is up to half a texel away along either axis: the map is wrong only that near to the
+  // square's outline (half-size 1 at distance 3). Corners are snapped to 1/256 texel.
   const double reach = (0.5 + 1.0 / 256) * 1.6 / 1022;
   std::size_t wrong = 0, beside = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
@@ -100,8 +101,8 @@ TEST_F(MapsClosedForm, TheUndersideOfTheOccluderIsBelowItsHorizonAndNeverLit) {
   }
 }
 
-/// Returns the share of pairs at judged pixels that accumulate and the last judge, exact arithmetic, decide
-/// differently.
+/// Returns the share of pairs at judged pixels that accumulate decides differently from exact arithmetic, the final
+/// judge.
 double disagreement(const Stage& stage, const Masks& result) {
   const auto classes = visibility::classify_pixels(stage.floats, stage.samples, stage.light);
   const std::uint32_t words = stage.light.words_per_mask();
@@ -135,12 +136,12 @@ TEST_F(MapsClosedForm, ASelfShadowingSphereAgreesWithTheExactPairs) {
 TEST_F(MapsClosedForm, ARoomWithWallsUpToTheLightsPlaneAndBeyondIsCoveredByHemicubes) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});   // floor
-  add_quad(scene, {0, 2, -3}, {3, 0, 0}, {0, 2, 0});  // walls from 0 to 4, the light is at 3
+  add_quad(scene, {0, 2, -3}, {3, 0, 0}, {0, 2, 0});  // walls from 0 to 4; the light is at 3
   add_quad(scene, {-3, 2, 0}, {0, 0, 3}, {0, 2, 0});
   add_quad(scene, {3, 2, 0}, {0, 0, 3}, {0, 2, 0});
   add_quad(scene, {-1.5, 2, -1.5}, {0.3, 0.3, 0}, {0, 0, 0.8});
   add_quad(scene, {1.5, 2.6, 0}, {0, 0.2, 0},
-           {0, 0, 0.8});  // upright, beside the light: shades the wall near its plane
+           {0, 0, 0.8});  // upright, next to the light: shades the wall near the light's plane
   scene.lights.push_back(ceiling_light(3, 0.4));
   scene.cameras.push_back(camera({0, 2, 7}, {0, 1.7, 0}, 50));
   for (const bool two_sided : {false, true}) {

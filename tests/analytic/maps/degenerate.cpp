@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input that has no meaning, or hardly any, for every method of the family: V is a share of the light whatever it is
-// given, 1 where nothing casts, and the same to the bit however large the scene is.
+// Tests every method of the family with degenerate input: V is always a share of the light, is 1 where nothing casts,
+// and is the same to the bit however large the scene is.
 
 #include "base/error.hpp"
 #include "tests/analytic/maps/map_variants.hpp"
@@ -13,7 +13,7 @@
 namespace penumbra::tests {
 namespace {
 
-/// All sixteen, with what decides which code of theirs runs.
+/// The family's methods, with options that select different code.
 constexpr const char* kDegenerateVariants[] = {"shadow-map",
                                                "shadow-map:bias=0:receiverPlane=off:depth=midpoint",
                                                "shadow-map:test=id",
@@ -82,7 +82,7 @@ class MapsDegenerate : public MapsTest {
     methods_.clear();
     MapsTest::TearDownTestSuite();
   }
-  /// Made once: pipelines take longer than small pictures. Maps of the smallest size that there is.
+  /// Methods are made once, because pipelines take longer than small pictures; maps have the smallest allowed size.
   static visibility::Method& method(const std::string& words) {
     auto& made = methods_[words];
     visibility::MethodOptions smallest{{"size", "8"}};
@@ -128,7 +128,7 @@ TEST_F(MapsDegenerate, EveryMethodGivesAShareOfTheLight) {
   };
   const auto around_the_light = [](scenes::Scene& scene) { add_object(scene, "shell", sphere({0, 2, 0}, 0.7, 4)); };
   const auto on_the_floor = [](scenes::Scene& scene) {
-    add_quad(scene, {0.3, 0, 0}, {0.8, 0, 0}, {0, 0, 0.8});  // p is on it, and on the floor
+    add_quad(scene, {0.3, 0, 0}, {0.8, 0, 0}, {0, 0, 0.8});  // p is on this quad and on the floor
     add_quad(scene, {-0.9, 1e-7, 0}, {0.5, 0, 0}, {0, 0, 0.5});
   };
   const auto beside_the_window = [](scenes::Scene& scene) {
@@ -169,7 +169,7 @@ TEST_F(MapsDegenerate, EveryMethodGivesAShareOfTheLight) {
     for (const Given& one : all) {
       if (!can(method(words), one.stage.light)) continue;
       const Masks found = run(method(words), one.stage);
-      // V is in [0, 1], which no NaN is.
+      // V is in [0, 1]; a NaN would fail this.
       EXPECT_TRUE(std::ranges::all_of(found.visibility, [](float v) { return v >= 0 && v <= 1; }))
           << words << ", " << one.name;
     }
@@ -186,9 +186,9 @@ TEST_F(MapsDegenerate, WhereNothingCastsAllIsLit) {
   }
 }
 
-// A floor that casts no shadow is darkened by what stands over it as one that does. Of methods that compare heights a
-// floor that casts is a part of what they see: those are left out. layered-attenuation knows surfaces by neighbours'
-// depths, which beside the plate are others.
+// A floor that casts no shadow receives the same shadow as one that casts. Methods that compare heights see the floor
+// only if it casts: they are left out. layered-attenuation joins surfaces by the depths of neighbouring texels, which
+// differ next to the plate.
 TEST_F(MapsDegenerate, WhatCastsNoShadowReceivesIt) {
   const auto plate = [](scenes::Scene& scene) {
     add_quad(scene, {0, 1, 0}, {0.4, 0, 0}, {0, 0, 0.4}).receives_shadow = false;

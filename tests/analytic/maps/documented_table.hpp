@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Tables that pages publish, held to what is measured.
+// Compares tables on documentation pages with measurements.
 
 #include <gtest/gtest.h>
 
@@ -15,11 +15,11 @@
 
 namespace penumbra::tests {
 
-/// The numbers of a Markdown table of a page, row by row, as they are written (their decimals say how exactly). A minus
-/// sign may be U+2212; stars and per cent signs are left out.
+/// The numbers of a Markdown table on a page, row by row, as text (its decimals give the precision). A minus sign may
+/// be U+2212; stars and per cent signs are left out.
 class DocumentedTable {
  public:
-  /// `head`: the table's first line, or how it begins.
+  /// `head`: the beginning of the table's first line.
   DocumentedTable(const std::filesystem::path& page, const std::string& head) {
     std::ifstream file(page);
     std::string line;
@@ -43,14 +43,14 @@ class DocumentedTable {
   [[nodiscard]] double value(std::size_t row, std::size_t column) const {
     return std::strtod(rows_.at(row).at(column).c_str(), nullptr);
   }
-  /// One unit of the last digit that is written.
+  /// Returns one unit of the last written digit.
   [[nodiscard]] double digit(std::size_t row, std::size_t column) const {
     const std::string& text = rows_.at(row).at(column);
     const std::size_t point = text.find('.');
     return point == std::string::npos ? 1 : std::pow(10, -static_cast<double>(text.size() - point - 1));
   }
-  /// Another driver may snap edges differently: a tenth of the value is allowed for that, and a unit of the last digit
-  /// for rounding.
+  /// Expects agreement within a tenth of the value, because another driver may snap edges differently, and within a
+  /// unit of the last digit for rounding.
   void expect(std::size_t row, std::size_t column, double measured) const {
     EXPECT_NEAR(measured, value(row, column), 0.1 * std::abs(value(row, column)) + digit(row, column))
         << "row " << row << ", column " << column;

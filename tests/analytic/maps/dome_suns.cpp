@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes as suns (maps/host/dome_suns.hpp): the parts that the sky is cut into, and methods of maps under a sky against
-// exact areas and exact masks.
+// Tests domes as suns (maps/host/dome_suns.hpp): the parts into which the sky is cut, and map methods under a sky
+// against exact areas and exact masks.
 
 #include "maps/host/dome_suns.hpp"
 #include "maps/host/every_light.hpp"
@@ -31,7 +31,8 @@ scenes::Scene bare_floor_under_dome(const scenes::Dome& dome = {}) {
 }
 
 TEST(MedianCut, HalvesTheLongerSide) {
-  // Eight directions around at one height, in two heaps: the first cut parts the heaps, the next each heap around.
+  // Eight directions at one height, in two clusters: the first cut separates the clusters, the next cuts split each
+  // cluster by azimuth.
   std::vector<glm::vec3> directions;
   for (const double start : {10.0, 100.0}) {
     for (int i = 0; i < 4; ++i) {
@@ -41,7 +42,8 @@ TEST(MedianCut, HalvesTheLongerSide) {
   }
   const auto four = maps::median_cut(directions, kAxes, 4);
   EXPECT_EQ(four, (std::vector<std::vector<std::uint32_t>>{{0, 1}, {2, 3}, {4, 5}, {6, 7}}));
-  // Regions near the zenith that reach far around are narrow: the cut is by height, of 67° here, not of 80° around.
+  // Regions near the zenith are narrow even if they span many degrees of azimuth: the cut is by height, over 67°, not
+  // by azimuth, over 80°.
   std::vector<glm::vec3> narrow;
   for (const double height : {80.0, 84.0}) {
     for (const double around : {-40.0, 40.0}) {
@@ -76,7 +78,7 @@ class DomeSuns : public MapsTest {
     const char* name;
     Factory make;
     visibility::MethodOptions options;
-    double off;  ///< from what is right
+    double off;  ///< allowed error
   };
   static Masks found(const Entry& entry, const Stage& stage, std::uint32_t suns = 64, std::uint32_t rows = 0) {
     visibility::MethodOptions options = entry.options;
@@ -123,8 +125,8 @@ TEST_F(DomeSuns, AreCloseToTheSky) {
   EXPECT_EQ(found(entries[0], stage, 8, 5).visibility, found(entries[0], stage, 8).visibility) << "whatever the tiles";
 }
 
-/// Masks have the dome's own light samples: accumulate's bits are those of the exact decision, but near edges, where a
-/// texel decides.
+/// Masks have the dome's own light samples: accumulate's bits are those of the exact decision, except near edges, where
+/// a texel decides.
 TEST_F(DomeSuns, AccumulateHasADomesOwnDirections) {
   scenes::Scene scene = bare_floor_under_dome();
   scene.objects.front().casts_shadow = true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Suns, spheres and surfaces with holes before methods whose maps know planar lights and solid casters alone
-// (maps/host/every_light.hpp), against closed forms, exact areas, and the same casters cut out of solid surfaces.
+// Tests suns, spheres and surfaces with holes with methods whose maps handle only planar lights and solid casters
+// (maps/host/every_light.hpp): against closed forms, exact areas, and the same casters cut out of solid surfaces.
 
 #include "maps/host/every_light.hpp"
 #include "maps/host/holes.hpp"
@@ -48,7 +48,7 @@ std::vector<Entry> all_methods(const std::string& size) {
   return all;
 }
 
-/// Rays through layers, and penumbrae of one hard shadow: with what the family's table gives each.
+/// layer-rays and the methods that make penumbrae from one hard shadow, each with its entry of the family's table.
 std::vector<Entry> foils(const std::string& size) {
   const maps::Given no_holes{.suns = true, .spheres = true, .holes = false},
       no_spheres{.suns = true, .spheres = false, .holes = true};
@@ -89,12 +89,13 @@ class EveryLight : public MapsTest {
 
 constexpr std::uint32_t kCells = 4;
 
-/// A leaf above a floor: a picture of kCells² texels, every other one a hole, laid `times` times across a tilted quad.
+/// A leaf above a floor: a picture of kCells² texels, every other one a hole, repeated `times` times across a tilted
+/// quad.
 struct Leaf {
   glm::dvec3 center{0.1, 1, 0}, u{0.8, 0.15, 0}, v{0, 0.1, -0.8};
   double times = 1;
   scenes::PictureUse::Wrap wrap = scenes::PictureUse::Wrap::repeat;
-  bool vertices = false;  ///< vertex alphas from 0 at −u to 1 at +u, of which 0.4 / 0.9 are enough
+  bool vertices = false;  ///< vertex alphas from 0 at −u to 1 at +u; opaque from 0.4 / 0.9 on
 
   [[nodiscard]] bool is_there(double s, double t) const {
     const auto texel = [&](double at) {
@@ -123,7 +124,7 @@ struct Leaf {
     for (std::uint32_t i = 0; i < kCells * kCells; ++i)
       scene.pictures[0].texels.push_back({0, 0, 0, static_cast<std::uint8_t>((i % kCells + i / kCells) % 2 * 255)});
   }
-  /// Adds the opaque texels as solid squares.
+  /// Adds the leaf's opaque texels as solid squares.
   void add_cut_out_to(scenes::Scene& scene) const {
     std::vector<Corners> squares;
     for (std::uint32_t i = 0; i < kCells * kCells; ++i) {
@@ -139,7 +140,7 @@ struct Leaf {
 scenes::Scene floor_under(const scenes::AreaLight& light) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {1.6, 0, 0}, {0, 0, -1.6});
-  scene.soup.positions.emplace_back(0, 3, 0);  // one origin whatever stands above
+  scene.soup.positions.emplace_back(0, 3, 0);  // fixes the origin, whatever stands above the floor
   scene.lights.push_back(light);
   scene.cameras.push_back(camera({0, 3, 4}, {0, 0.5, 0}));
   return scene;
@@ -151,7 +152,7 @@ scenes::AreaLight shaped(const scenes::LightShape& shape) {
   return light;
 }
 
-/// View samples over a floor, n × n or one row of them along x, which its first triangle carries.
+/// View samples over a floor, n × n or one row along x, on the floor's first triangle.
 auto over_floor(std::uint32_t columns, std::uint32_t rows, double middle, double half) {
   return [=](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
     const auto corners = floats.corners(0);
@@ -176,8 +177,8 @@ Stage on_the_floor(const scenes::Scene& scene, std::uint32_t side, std::uint32_t
   return {scene, side, side, light_samples(samples), over_floor(side, side, 0, 1.4)};
 }
 
-// Each texel's centre, by the plane of the leaf in double. Rasterisers snap corners to 1/256 texel: where a fiftieth of
-// a texel decides, either may be.
+// Compares each texel's centre with the leaf's plane in double. Rasterisers snap corners to 1/256 texel: texels that a
+// shift by a fiftieth of a texel would change are skipped.
 TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
   constexpr std::uint32_t kSize = 96;
   using Wrap = scenes::PictureUse::Wrap;
@@ -186,7 +187,7 @@ TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
   for (const Leaf& leaf : leaves) {
     scenes::Scene scene = floor_under(ceiling_light(3, 0.3));
     leaf.add_to(scene);
-    // Solid, above a part of the leaf: there the leaf is the second layer, or a hole in it.
+    // A solid board above a part of the leaf: under it the second layer is the leaf, or what is below a hole in it.
     const glm::dvec2 board_from(-0.9, -0.5), board_to(0.1, 0.5);
     add_quad(scene, {-0.4, 1.6, 0}, {0.5, 0, 0}, {0, 0, -0.5});
     scene.looks.places.resize(scene.soup.positions.size());
@@ -203,7 +204,7 @@ TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
       const maps::Face face = maps::face_of(view, maps.basis, 0);
       std::size_t solid = 0, holes = 0;
       for (std::uint32_t i = 0; i < kSize * kSize; ++i) {
-        /// The leaf's depth there; nothing where there is none.
+        /// Returns the leaf's depth there; nullopt beside it or in a hole.
         const auto depth_at = [&](const glm::dvec2& beside) -> std::optional<double> {
           const glm::dvec2 at = face.lower + (glm::dvec2(i % kSize, i / kSize) + 0.5 + beside) *
                                                  (face.upper - face.lower) / double{kSize};
@@ -241,7 +242,7 @@ TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
             face.lower + (glm::dvec2(i % kSize, i / kSize) + 0.5) * (face.upper - face.lower) / double{kSize};
         const glm::dvec3 below =
             maps.basis.center + stage.floats.origin + 3.0 * (across.x * face.a + across.y * face.b + face.w);
-        if (std::max(std::abs(below.x), std::abs(below.z)) > 1.59) continue;  // beside the floor
+        if (std::max(std::abs(below.x), std::abs(below.z)) > 1.59) continue;  // outside the floor
         std::vector<double> depths;
         for (const std::optional<double>& depth : {board, expected, std::optional(ground), std::optional(1.0)})
           if (depth) depths.push_back(*depth);
@@ -256,8 +257,8 @@ TEST_F(EveryLight, TexelsOfMapsSeeThroughHoles) {
   }
 }
 
-/// A leaf with holes shades as the same leaf cut out of solid squares: borders of squares may be a texel's step
-/// elsewhere.
+/// A leaf with holes casts the same shadow as solid squares cut out of it, up to a texel's step at the borders of
+/// squares.
 class Leaves : public EveryLight {
  protected:
   static void expect_squares(const std::vector<Entry>& entries, const scenes::AreaLight& light) {
@@ -271,7 +272,7 @@ class Leaves : public EveryLight {
       for (const char* rasteriser : {"vulkan", "opengl"}) {
         entry.options["rasteriser"] = rasteriser;
         const Masks found = run_entry(entry, stage), right = run_entry(entry, solid);
-        // A leaf's corners are holes: windows and slices that end with casters end elsewhere with its squares.
+        // A leaf's corners are holes: windows and slices that end where casters end differ for its squares.
         const bool by_extent = entry.name == "soft-shadow-map" || entry.name == "occlusion-textures";
         EXPECT_LT(error(found, right), by_extent ? 0.04 : 0.005) << entry.name << " " << rasteriser;
         const auto shaded = std::ranges::count_if(right.visibility, [](float v) { return v < 0.9F; });
@@ -284,7 +285,7 @@ class Leaves : public EveryLight {
 };
 
 TEST_F(Leaves, ShadeAsTheirSquaresDo) {
-  // One method of each kind of map: depths alone, layers of depths, ids, slices, objects by themselves.
+  // One method of each kind of map: depths only, layers of depths, ids, slices, separate objects.
   const auto some =
       some_methods("96", {"pcss", "backproject-peel", "shadow-map ids", "occlusion-textures", "soft-shadow-map"});
   expect_squares(some, lights[0]);
@@ -301,7 +302,7 @@ TEST_F(Leaves, ShadeAsTheirSquaresDoInEveryMethodFull) {
   for (const scenes::AreaLight& light : lights) expect_squares(all_methods("160"), light);
 }
 
-// Directions (σ, −1) from p cross the height h at x + h σ_x: the segment of the sun's disk beyond the edge is hidden.
+// Directions (σ, −1) from p cross the height h at x + h σ_x: a segment of the sun's disk, beyond the edge, is hidden.
 class HalfASun : public EveryLight {
  protected:
   static void expect_segments(const std::vector<Entry>& entries, std::uint32_t samples) {
@@ -321,8 +322,8 @@ class HalfASun : public EveryLight {
         worst = std::max(worst, std::abs(static_cast<double>(found.visibility[i]) - expected));
       }
       fmt::print("half a sun, {}: off by {:.4f}\n", entry.name, worst);
-      // A texel is 3.2 / 512 wide and moves the edge by up to half of that, which is 0.023 = 2 / pi of it over the
-      // reach. Boxes, taps and light samples in place of the disk are off by more.
+      // A texel is 3.2 / 512 wide and moves the edge by up to half of that: V is off by 0.023, 2 / pi of the shift over
+      // the reach. Methods that replace the disk by boxes, taps or light samples are off by more.
       const bool outlines = entry.name == "contour" || entry.name == "packet" || entry.name == "backproject";
       EXPECT_LT(worst, outlines ? 0.023 : 0.07) << entry.name;
     }
@@ -339,7 +340,7 @@ TEST_F(HalfASun, IsHiddenByAHalfPlaneInEveryMethodFull) {
   expect_segments(soft, 256);
 }
 
-// A disk so far away that its rays are parallel within a degree of the sun's: the maps are the same except for where
+// A disk so far away that its rays are parallel to the sun's within a degree: the maps are the same except for where
 // texels begin, and so are the penumbrae.
 TEST_F(EveryLight, FoilsSeeASunAsAFarDisk) {
   constexpr double kFar = 400, kAngle = 24;
@@ -363,8 +364,8 @@ TEST_F(EveryLight, FoilsSeeASunAsAFarDisk) {
   }
 }
 
-// SunSpace promises that points on a ray to the sun are on the segment to the disk's point, that planes stay planes,
-// and that what is linear over a triangle is linear again after weighting.
+// SunSpace promises that a ray to the sun becomes a segment to the disk's point, that planes stay planes, and that what
+// is linear over a triangle is again linear after weighting.
 TEST_F(EveryLight, SunSpaceTakesRaysToSegments) {
   scenes::Scene scene = floor_under(shaped(scenes::Sun{{0.3, -1, -0.45}, 12}));
   Leaf().add_to(scene);
@@ -395,10 +396,10 @@ TEST_F(EveryLight, SunSpaceTakesRaysToSegments) {
     EXPECT_LT(glm::length(q - from - t * (to - from)), 4e-6);
     const glm::dvec3 aside = glm::normalize(glm::cross(n, glm::dvec3(0.3, 0.1, 1)));
     EXPECT_NEAR(glm::dot(normal, mapped(p + 0.5 * aside, n).first - from), 0, 2e-6);
-    // Points above the horizon in one space are above it in the other.
+    // A point above the horizon in one space is above it in the other.
     EXPECT_EQ(glm::dot(n, glm::dvec3(stage.light.points[j])) > 0, glm::dot(normal, to - from) > 0);
   }
-  // The leaf's first triangle.
+  // Barycentric weights over the leaf's first triangle.
   const visibility::SceneFloats& floats = space.scene();
   const visibility::Triangle corners = floats.triangles[2];
   for (int i = 0; i < 20; ++i) {
@@ -424,7 +425,8 @@ TEST_F(EveryLight, SunSpaceTakesRaysToSegments) {
   }
 }
 
-// The figures of lamp_disks.hpp, over directions that are spread evenly; and each point in the beam of its disk.
+// Checks the figures that lamp_disks.hpp states, over evenly spread directions, and that each point is in the beam of
+// its disk.
 TEST_F(EveryLight, LampDisksFaceWhatTheyLight) {
   scenes::Scene scene = floor_under(shaped(scenes::Sphere{{0, 2, 0}, 0.3}));
   const Stage stage = on_the_floor(scene, 4);
@@ -456,7 +458,8 @@ TEST_F(EveryLight, LampDisksFaceWhatTheyLight) {
   EXPECT_LT(narrower, 0.02);
 }
 
-/// A ball of a lamp above a floor that reaches around it, and a disk of its size: a method's error is about the same.
+/// A spherical lamp above a floor that surrounds it, and a disk of its size: a method's error is about the same for
+/// both.
 class Balls : public EveryLight {
  protected:
   static Stage stage_of(const scenes::LightShape& shape) {
@@ -472,7 +475,8 @@ class Balls : public EveryLight {
       const Masks found = run_entry(entry, ball);
       const double off = error(found, of_ball), as_disk = error(run_entry(entry, disk), of_disk);
       fmt::print("sphere {}: {:.4f}, disk {:.4f}\n", entry.name, off, as_disk);
-      // Windows of a fixed number of texels, and slices parallel to a disk that looks aside, are others.
+      // This bound is wider for windows of a fixed number of texels, and for slices parallel to a disk that faces
+      // sideways.
       const bool by_map = entry.name == "pcf" || entry.name == "occlusion-textures";
       EXPECT_LT(off, (by_map ? 2 : 1.3) * as_disk + 0.008) << entry.name;
       const Masks in_tiles = run_entry(entry, ball, 7);
@@ -495,8 +499,8 @@ TEST_F(Balls, AreAsGoodAsDisksInFoils) {
   EXPECT_THROW(run_entry(arvo, stage_of(scenes::Sphere{{0, 2, 0}, 0.25})), InputError);
 }
 
-// View samples in one pyramid of the lamp's: however many tiles ask, its disk's maps are made once, and counters say
-// so.
+// All view samples are in one of the lamp's pyramids: its disk's maps are made once, however many tiles are evaluated,
+// and the counters show it.
 TEST_F(Balls, ADiskIsMadeOnce) {
   scenes::Scene scene = floor_under(shaped(scenes::Sphere{{0, 2, 0}, 0.25}));
   add_quad(scene, {0.2, 0.7, 0.1}, {0.4, 0.05, 0}, {0, 0, -0.4});
@@ -526,11 +530,11 @@ TEST_F(Balls, ADiskIsMadeOnce) {
 
 TEST_F(Balls, AreAsGoodAsDisksInEveryMethodFull) {
   std::vector<Entry> entries = all_methods("128");
-  std::erase_if(entries, [](const Entry& one) { return one.name == "convolution"; });  // one plane for all that casts
+  std::erase_if(entries, [](const Entry& one) { return one.name == "convolution"; });  // uses one plane for all casters
   expect_disks(entries);
 }
 
-// One instance from light to light: what it had before changes nothing.
+// One instance with several lights in turn: earlier lights change nothing.
 TEST_F(EveryLight, LightsFollowOneAnother) {
   const std::array shapes{scenes::LightShape(scenes::Sun{{-0.2, -1, 0.1}, 6}),
                           scenes::LightShape(scenes::Rectangle{{0, 4, 0}, {0.3, 0, 0}, {0, 0, 0.3}}),

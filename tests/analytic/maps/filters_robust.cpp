@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what holds of every filter for any input: V in [0, 1] for input without a meaning, 1 where nothing is near, the
-// same bytes for any order of triangles; and where filters are known to be wrong.
+// Tests what holds for every filter and any input (V in [0, 1] even for degenerate input, 1 where nothing is near, the
+// same bytes for any order of triangles) and where filters are known to be wrong.
 
 #include "base/error.hpp"
 #include "maps/filters/methods.hpp"
@@ -69,7 +69,7 @@ class Filters : public MapsTest {
   }
 };
 
-/// A floor, and what `add` puts above it.
+/// A floor with what `add` puts above it.
 template <typename Add>
 scenes::Scene above_a_floor(const scenes::AreaLight& light, const Add& add) {
   scenes::Scene scene;
@@ -101,7 +101,7 @@ TEST_F(Filters, DegenerateInputGivesAShareOfTheLight) {
   }
   add(above_a_floor(ceiling_light(2, 0.5), around_the_light));
   add(above_a_floor(ceiling_light(2, 0.5), beside_the_window));
-  scenes::Scene empty = above_a_floor(two_sided, nothing);  // nothing casts at all
+  scenes::Scene empty = above_a_floor(two_sided, nothing);  // no caster at all
   empty.objects[0].casts_shadow = false;
   add(empty);
   for (const char* size : {"8", "37"}) expect_shares(stages, size);
@@ -119,20 +119,20 @@ TEST_F(Filters, SoupsAndBrokenMeshesGiveAShareOfTheLight) {
   expect_shares(stages, "32");
 }
 
-// No caster in a window: V is 1 to the last bit.
+// With no caster in a window V is exactly 1.
 TEST_F(Filters, WhereNothingIsNearVIsOne) {
   const auto board = [](scenes::Scene& scene) { add_quad(scene, {-1.2, 0.3, 0}, {0.3, 0, 0}, {0, 0, 0.3}); };
   const Stage stage(above_a_floor(ceiling_light(2, 0.3), board), 32, 32, light_samples(1),
                     grid_samples(32, {1.0, 0, 0}, {0.9, 0, 0}, {0, 0, 0.9}, {0, 1, 0}));
   for (const Filter& filter : all_filters("128")) {
-    if (filter.name.find("csm") != std::string::npos) continue;  // rings
-    if (filter.name.find("mip") != std::string::npos) continue;  // a level's texels are as large as the window
+    if (filter.name.find("csm") != std::string::npos) continue;  // its series rings
+    if (filter.name.find("mip") != std::string::npos) continue;  // texels of its level are as large as the window
     const Masks found = run(filter.make, stage, filter.options);
     EXPECT_EQ(*std::ranges::min_element(found.visibility), 1.0F) << filter.name;
   }
 }
 
-// Methods that know no light points count those of a pattern of 64 that are above a receiver's plane. Nothing casts
+// Methods without light points count the points of a pattern of 64 that are above a receiver's plane. Nothing casts
 // here.
 TEST_F(Filters, TheHorizonLeavesItsShareOfThePattern) {
   const auto boards = [](scenes::Scene& scene) {
@@ -140,7 +140,7 @@ TEST_F(Filters, TheHorizonLeavesItsShareOfThePattern) {
     for (const double x : {-0.6, 0.2, 0.5}) {
       add_quad(scene, {x, 1.2, 0}, {0.3, 1.1, 0}, {0.2, 0, 0.5}).casts_shadow = false;
     }
-    add_object(scene, "sphere", sphere({1.3, 1, 0.6}, 0.6, 12)).casts_shadow = false;  // planes of all kinds
+    add_object(scene, "sphere", sphere({1.3, 1, 0.6}, 0.6, 12)).casts_shadow = false;  // has planes of all orientations
   };
   scenes::Scene scene = above_a_floor(ceiling_light(3, 0.8), boards);
   scene.cameras.front() = camera({3, 2.5, 2}, {0, 1.2, 0}, 60);
@@ -179,7 +179,7 @@ TEST_F(Filters, OrderAndWindingOfTrianglesChangeNoByte) {
   };
   scenes::Scene scene = above_a_floor(ceiling_light(2, 0.3), solids), turned = scene;
   std::mt19937 random(7);
-  shuffle_order(turned.soup, random, 2);  // the floor's stay first
+  shuffle_order(turned.soup, random, 2);  // the floor's triangles stay first
   shuffle_corners(turned.soup, random);
   const Stage first(scene, 32, 32, light_samples(1)), second(turned, 32, 32, light_samples(1));
   for (const Filter& filter : all_filters("64")) {
@@ -197,10 +197,10 @@ TEST_F(Filters, TilesChangeNoByte) {
   }
 }
 
-// Eisemann et al. 2009, figures 5.3 and 5.4: what a window holds is taken for a blocker wherever it stands, also beside
-// the light.
+// Eisemann et al. 2009, figures 5.3 and 5.4: a filter takes everything in its window for a blocker, even what stands
+// beside the light.
 TEST_F(Filters, BlockersBesideTheLightDarkenWhatTheyDoNotShade) {
-  // A tall wall along x = 1: from the floor beside it the light's every point is in plain view.
+  // A tall wall along x = 1: the floor next to it sees every point of the light.
   const auto wall = [](scenes::Scene& scene) { add_quad(scene, {1, 1.2, 0}, {0, 1.2, 0}, {0, 0, 2}); };
   const Stage stage(above_a_floor(ceiling_light(4, 0.8), wall), 32, 32, light_samples(1),
                     grid_samples(32, {0, 0, 0}, {0.95, 0, 0}, {0, 0, 0.5}, {0, 1, 0}));
@@ -216,8 +216,8 @@ TEST_F(Filters, BlockersBesideTheLightDarkenWhatTheyDoNotShade) {
   EXPECT_EQ(sampled, 0);
 }
 
-// Eisemann et al. 2009, figure 5.3: two heights become one mean, whose window is wider than the lower blocker's: light
-// where there is none.
+// Eisemann et al. 2009, figure 5.3: two heights are averaged to one, whose window is wider than the lower blocker's:
+// light appears in the umbra.
 TEST_F(Filters, BlockersAtTwoHeightsLightTheUmbra) {
   const auto boards = [](scenes::Scene& scene) {
     add_quad(scene, {-0.35, 3, 0}, {0.25, 0, 0}, {0, 0, 3}).receives_shadow = false;
@@ -225,7 +225,7 @@ TEST_F(Filters, BlockersAtTwoHeightsLightTheUmbra) {
   };
   const Stage stage(above_a_floor(ceiling_light(4, 0.5), boards), 32, 32, light_samples(1),
                     grid_samples(32, {0, 0, 0}, {0.49, 0, 0}, {0, 0, 0.49}, {0, 1, 0}));
-  // The lower board alone hides the whole light up to x (1 − 1/8) + 0.5/8 = 0.5: everywhere here.
+  // The lower board alone hides the whole light up to x (1 − 1/8) + 0.5/8 = 0.5, that is, at every sample here.
   const auto lit = [&](const Factory& make) {
     const Masks found = run(make, stage, {{"size", "512"}});
     return static_cast<double>(std::ranges::count_if(found.visibility, [](float v) { return v > 0.05F; })) / 1024;
@@ -236,7 +236,7 @@ TEST_F(Filters, BlockersAtTwoHeightsLightTheUmbra) {
   EXPECT_GT(moments, 0.01);
 }
 
-// Eisemann et al. 2009, section 5.2.2.1: few taps of a search differ from pixel to pixel.
+// Eisemann et al. 2009, section 5.2.2.1: a search with few taps differs from pixel to pixel.
 TEST_F(Filters, FewTapsAreFarFromMany) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
@@ -257,7 +257,8 @@ TEST_F(Filters, FewTapsAreFarFromMany) {
   EXPECT_GT(error(few), 2 * error(some));
 }
 
-/// A floor under a board and a light that may have a picture; other scenes than boards have more wrong with pcss.
+/// A floor under a board and a light that may have a texture; only boards, because pcss has further errors in other
+/// scenes.
 scenes::Scene board_under(std::optional<scenes::Texture> texture) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -268,8 +269,8 @@ scenes::Scene board_under(std::optional<scenes::Texture> texture) {
   return scene;
 }
 
-// A constant texture leaves every byte; under one that is black except on a half of the light V is that half's. (What
-// single taps weigh: PcssFormulas.TexturesWeighTaps.)
+// A constant texture changes no byte; under a texture that is bright on one half of the light only, V is that half's.
+// (PcssFormulas.TexturesWeighTaps tests the weights of single taps.)
 TEST_F(Filters, PcssWeighsTapsByTheTexture) {
   constexpr std::uint32_t kSize = 512;
   const visibility::MethodOptions options{
@@ -281,26 +282,26 @@ TEST_F(Filters, PcssWeighsTapsByTheTexture) {
   const Stage plain = stage_of({});
   EXPECT_EQ(v_of(plain), v_of(stage_of(constant_texture(3, 2, glm::vec3(0.3F, 0.5F, 0.1F)))));
   for (const bool upper : {false, true}) {
-    // Bright where x > 0, or where z > 0: the picture's right column, or its first row.
+    // Bright where x > 0, or where z > 0: the texture's right column, or its first row.
     const Stage stage = stage_of(texture_of(upper ? 1 : 2, upper ? 2 : 1, [&](std::uint32_t x, std::uint32_t y) {
       return glm::vec3((upper ? y == 0 : x == 1) ? 1.0F : 0.0F);
     }));
     const std::vector<float> found = v_of(stage);
     const glm::dvec2 lower(upper ? -1 : 0, upper ? 0 : -1), wide = glm::dvec2(1) - lower;
-    // The window holds the floor, 3/4, and what is tapped beside it; on the light a texel is as large as f = 2 · 4 /
-    // (4 − 2) makes it, and each of the board's four edges half of one off; corners are snapped to 1/256 of one. Taps
-    // nearer to an edge than that are open, all others known.
+    // The window holds the floor, 3/4, and the taps' reach beside it. On the light a texel is f = 2 · 4 / (4 − 2) times
+    // as large, and each of the board's four edges is off by half a texel; corners are snapped to 1/256 texel. Taps
+    // nearer to an edge than that are undecided, all others are known.
     const maps::LightBasis basis = maps::light_basis(stage.light);
     const glm::dvec2 side = 2.0 * (0.75 + maps::half_extent(stage.light, basis) / maps::half_width(stage.light));
     const glm::dvec2 beside = (0.5 + 1.0 / 256) * 4 * side / (kSize - 2.0);
-    std::vector<glm::dvec2> taps;  // on the light that is left
+    std::vector<glm::dvec2> taps;  // on the bright half
     for (const glm::vec2& tap : maps::light_pattern(stage.light, basis, 1024)) {
       const glm::dvec3 l = static_cast<double>(tap.x) * basis.u + static_cast<double>(tap.y) * basis.v;
       if (glm::all(glm::greaterThan(glm::dvec2(l.x, l.z), lower))) taps.emplace_back(l.x, l.z);
     }
     double worst = 0, bound = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;  // the floor's two
+      if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;  // the floor's two triangles
       const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
       const glm::dvec2 at(p.x, p.z), middle = at + (glm::dvec2(0.2, 0.1) - at) * 2.0, half(1, 0.8);
       const auto hidden = [&](const glm::dvec2& reach) {
@@ -324,7 +325,7 @@ TEST_F(Filters, PcssWeighsTapsByTheTexture) {
   }
 }
 
-// Filters that have no place for weights say so, and name those that have.
+// Filters that cannot weight taps refuse textures, and name filters that can.
 TEST_F(Filters, ATextureIsWeighedOrRefused) {
   const Stage stage(board_under(constant_texture(2, 2, glm::vec3(1))), 8, 8, light_samples(1));
   for (const Filter& filter : all_filters("16")) {
@@ -339,7 +340,7 @@ TEST_F(Filters, ATextureIsWeighedOrRefused) {
   }
 }
 
-// Taps that all lie on black texels have no V.
+// If all taps lie on black texels, V is undefined.
 TEST_F(Filters, PcssWithoutATapOnTheBrightTexelIsRefused) {
   const Stage stage(board_under(texture_of(
                         64, 64, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(x + y == 0 ? 1.0F : 0.0F); })),

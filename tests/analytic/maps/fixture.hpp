@@ -31,7 +31,7 @@ class MapsTest : public DeviceTest {
   }
 };
 
-/// Root of the mean square of difference(pixel) over pixels for which `counts(pixel)`.
+/// Root mean square of difference(pixel) over pixels for which `counts(pixel)`.
 inline double rmse(const Stage& stage, const std::function<bool(std::size_t)>& counts,
                    const std::function<double(std::size_t)>& difference) {
   double sum = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The formulas of image methods, one by one, where casters are parallel to the light: penumbra width, blocker search,
-// near plane and filter of pcss, tap by tap, and the bias. A formula that is off by 2 % fails here.
+// Tests the formulas of image methods one by one, with casters parallel to the light: pcss's penumbra width, blocker
+// search, near plane and filter, tap by tap, and the bias. A formula that is off by 2 % fails here.
 
 #include "tests/analytic/maps/parallel_square.hpp"
 #include "tests/analytic/maps/pcss_prediction.hpp"
@@ -13,8 +13,8 @@
 namespace penumbra::tests {
 namespace {
 
-/// A floor, ±4 at height 0, under a light at height 5, and boards [x0, x1] × [−6, 6] between: `casters` in order of
-/// their distance from the light.
+/// A board [x0, x1] × [−6, 6]. The scene has boards between a floor, ±4 at height 0, and a light at height 5; `boards`
+/// are in order of their distance from the light.
 struct Board {
   double height, x0, x1;
 };
@@ -34,8 +34,8 @@ class PcssFormulas : public MapsTest {
  protected:
   static constexpr std::uint32_t kSize = 4096, kTaps = 1024;
 
-  /// Every pixel of the floor within what the prediction leaves open, which must be less than 2 % of a penumbra would
-  /// change in the mean: 2 % more width moves V by (V − 1/2) 2 %, 0.5 % over a penumbra.
+  /// Expects every pixel of the floor within the prediction's bounds. Their mean width must be less than the change
+  /// that a 2 % error would cause: 2 % more width moves V by (V − 1/2) 2 %, 0.5 % over a penumbra.
   static void expect_predicted(const scenes::Scene& scene, const std::vector<Board>& boards, const std::string& name) {
     const Stage stage(scene, 64, 64, light_samples(1));
     const maps::LightBasis basis = maps::light_basis(stage.light);
@@ -45,8 +45,8 @@ class PcssFormulas : public MapsTest {
                        b = basis.local(glm::dvec3(board.x1, board.height, 6) - stage.floats.origin);
       casters.push_back({a.z, glm::min(glm::dvec2(a), glm::dvec2(b)), glm::max(glm::dvec2(a), glm::dvec2(b))});
     }
-    // The window holds the floor (±4 / 5) and what is tapped beside it, as far as half the light's width over the
-    // radius of the disk of its area.
+    // The window holds the floor (±4 / 5) and the taps' reach beside it, half the light's width over the radius of a
+    // disk of equal area.
     const double radius = std::sqrt(stage.light.area / std::numbers::pi);
     const glm::dvec2 texel = 2.0 * (0.8 + maps::half_extent(stage.light, basis) / radius) / (kSize - 2.0);
     const PcssPrediction predicted(stage.light, casters, {kTaps, kTaps, texel, radius});
@@ -61,7 +61,8 @@ class PcssFormulas : public MapsTest {
       if (triangle < 0 || stage.floats.object[static_cast<std::size_t>(triangle)] != 0) continue;
       const Between v = predicted(glm::dvec3(stage.samples.p[i]));
       const double is = found.visibility[i], off = std::max(v.low - is, is - v.high);
-      // V is a float; without a texture a whole number's share, else a sum of as many floats as there are taps.
+      // V is a float: without a texture the share of a whole number of taps, with one a sum of as many floats as there
+      // are taps.
       wrong += off > (stage.light.texture ? kTaps * 0x1p-24 : 1e-6) ? 1 : 0;
       beyond = std::max(beyond, off);
       if (v.low == 1 || v.high == 0) continue;
@@ -85,14 +86,14 @@ TEST_F(PcssFormulas, PenumbraWidthAndFilter) {
 }
 
 TEST_F(PcssFormulas, BlockerSearchOverTwoHeights) {
-  // The number of taps that meet either board decides the mean height.
+  // The numbers of taps that meet either board determine the mean height.
   const std::vector<Board> boards{{3.5, 0.3, 6}, {1.5, -6, -0.3}};
   expect_predicted(under_boards(boards), boards, "boards at 3.5 and 1.5");
 }
 
 TEST_F(PcssFormulas, NearPlaneNoNearerThanTheLightsRadius) {
-  // The upper board is at distance 1.05, nearer than the radius of a disk of the light's area, 1.128. (Much nearer, and
-  // the filter taps beside the map's window: docs/pcss.md, "Known failures".)
+  // The upper board is at distance 1.05, nearer than the radius of a disk of the light's area, 1.128. (If it were much
+  // nearer, the filter would tap beside the map's window: docs/pcss.md, "Known failures".)
   const std::vector<Board> boards{{3.95, 0.2, 6}, {2, -6, -0.4}};
   expect_predicted(under_boards(boards), boards, "boards at 3.95 and 2");
 }
@@ -104,11 +105,11 @@ TEST_F(PcssFormulas, DisksEllipsesAndPolygons) {
   expect_predicted(scene, boards, "disk");
   scene.lights.front().shape = scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0}, {0, 0, 0.4}};
   expect_predicted(scene, boards, "ellipse");
-  scene.lights.front().shape = scenes::Polygon{{{-1, 5, -0.5}, {1, 5, -0.5}, {0.2, 5, 1}}};  // its basis's u is along x
+  scene.lights.front().shape = scenes::Polygon{{{-1, 5, -0.5}, {1, 5, -0.5}, {0.2, 5, 1}}};  // its basis has u along x
   expect_predicted(scene, boards, "polygon");
 }
 
-// Each tap weighs what the texture has at its light point.
+// Each tap is weighted by the texture at its light point.
 TEST_F(PcssFormulas, TexturesWeighTaps) {
   const std::vector<Board> boards{{2, -6, 1}};
   scenes::Scene scene = under_boards(boards);
@@ -117,8 +118,8 @@ TEST_F(PcssFormulas, TexturesWeighTaps) {
   expect_predicted(scene, boards, "texture");
 }
 
-/// Points spread over a light have its moments. Means of a smooth function over n points of the R2 sequence are off by
-/// less than log₂ n / n of its range.
+/// Points spread over a light reproduce its moments. Means of a smooth function over n points of the R2 sequence are
+/// off by less than log₂ n / n of the function's range.
 TEST(LightPattern, IsSpreadEvenly) {
   constexpr std::uint32_t kCount = 1024;
   const double off = 10.0 / kCount;
@@ -152,22 +153,22 @@ TEST(LightPattern, IsSpreadEvenly) {
   }
 }
 
-/// A receiver and a board parallel to it that rises above it by as much, in depth, as the bias forgives somewhere:
-/// blocked where rise / (m · c) > bias · t · w · (1 + slope), c the texel's centre, m the plane's normal; slopes above
-/// 8 are taken to be 8. By the receiver's own depth w (receiverPlane=off) where w − (h − rise) / (m · c) > bias · t ·
-/// w.
+/// A receiver, and a board parallel to it that rises above it by about the depth that the bias forgives. The receiver
+/// is blocked where rise / (m · c) > bias · t · w · (1 + slope), with c the direction to the texel's centre and m the
+/// plane's normal; slopes above 8 count as 8. With the receiver's own depth w (receiverPlane=off) it is blocked where w
+/// − (h − rise) / (m · c) > bias · t · w.
 class Bias : public MapsTest {
  protected:
   static constexpr double kLight = 5, kSteepest = 8;
   struct Setting {
     std::uint32_t size = 256;
     double bias = 24;
-    double reach = 2;         ///< view samples lie so far about the floor's middle, along its slope
-    bool own_depth = false;   ///< of shadow-map alone
-    bool hard_alone = false;  ///< no method of lists
+    double reach = 2;         ///< view samples lie up to this far from the floor's middle, along its slope
+    bool own_depth = false;   ///< shadow-map only
+    bool hard_alone = false;  ///< shadow-map only, no method that keeps lists of depths
   };
 
-  /// The floor tilted by `tilt` about z; the board above it, twice as large.
+  /// Tests a floor tilted by `tilt` about z, and a board above it, twice as large.
   static void expect_forgiven(double tilt, double share, const Setting& setting) {
     const glm::dvec3 along(std::cos(tilt), std::sin(tilt), 0), up(-std::sin(tilt), std::cos(tilt), 0);
     scenes::Scene scene;
@@ -176,11 +177,11 @@ class Bias : public MapsTest {
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
     const Bounds window = window_of(along);
     const double texel = window.widest() / (setting.size - 2);
-    // The board is where the bias ends at the middle of the floor: rise / (m · c) there is bias t w (1 + slope).
+    // The board is at the limit of the bias in the middle of the floor: rise / (m · c) there is bias t w (1 + slope).
     const glm::dvec3 middle(0, -kLight, 0);
     const double rise = share * forgiven(middle, up, texel, setting) * cosine(middle, up);
     add_quad(scene, rise * up, 4.0 * along, {0, 0, -4}).receives_shadow = false;
-    // View samples by hand: the board hides the floor from any camera above it.
+    // View samples are set by hand, because the board would hide the floor from any camera above it.
     const auto grid = [&](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
       visibility::ViewSamples samples;
       samples.width = samples.height = kSide;
@@ -207,7 +208,7 @@ class Bias : public MapsTest {
       std::size_t lit = 0, dark = 0, near = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         const glm::dvec3 d = glm::dvec3(stage.samples.p[i]) - glm::dvec3(stage.light.center);
-        // The rise in depth at the centre of the texel, which is up to half a texel from d along either axis.
+        // The rise in depth at the texel's centre, which is up to half a texel away from d along either axis.
         double least = 1e30, most = 0, allowed_least = 1e30, allowed_most = 0;
         for (const double a : {-0.5, 0.5}) {
           for (const double b : {-0.5, 0.5}) {
@@ -229,7 +230,8 @@ class Bias : public MapsTest {
       }
       fmt::print("tilt {}, board at {} of the bias: {} lit, {} dark, {} of all within 2 %\n", tilt, share, lit, dark,
                  near);
-      // (By its own depth a tilted receiver is forgiven the same share everywhere; beyond the steepest slope, too.)
+      // (With its own depth a tilted receiver is forgiven the same share everywhere; so is one beyond the steepest
+      // slope.)
       if (tilt == 0 || setting.own_depth || setting.hard_alone) {
         EXPECT_EQ(share < 1 ? lit : dark, stage.samples.size());
         EXPECT_EQ(near, stage.samples.size());
@@ -258,7 +260,7 @@ class Bias : public MapsTest {
     }
     return bounds;
   }
-  /// m · c, m the floor's normal away from the light, for c one long along the light's axis.
+  /// m · c, where m is the floor's normal away from the light and c has length 1 along the light's axis.
   static double cosine(const glm::dvec3& c, const glm::dvec3& up) { return glm::dot(-up, c / -c.y); }
   /// Returns the largest change of the plane's depth across the map.
   static double slope(const glm::dvec3& c, const glm::dvec3& up) {
@@ -279,7 +281,7 @@ TEST_F(Bias, GrowsWithTheSlope) {
   expect_forgiven(-0.8, 1, {});
 }
 
-// Slopes at 86 degrees are 9 to 20 on the whole floor, and count as 8. Texels are so small that the plane's depth
+// At 86 degrees slopes are 9 to 20 on the whole floor, and count as 8. Texels are so small that the plane's depth
 // within one is known to a quarter of a percent.
 TEST_F(Bias, GrowsNoMoreBeyondTheSteepestSlope) {
   for (const double share : {0.985, 1.015}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// forward-map: splats against closed forms, against a twin that throws each texel's light at all view samples, and what
-// sets it apart from shadow-map.
+// Tests forward-map: splats against closed forms, against a twin that splats each texel's light onto all view samples,
+// and how it differs from shadow-map.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
@@ -18,7 +18,7 @@ class ForwardMap : public MapsTest {
   }
 };
 
-/// A B-spline of this degree, in texels from its middle.
+/// A B-spline of this degree, at a distance in texels from its middle.
 double spline(int degree, double at) {
   at = std::abs(at);
   if (degree == 0) return at <= 0.5 ? 1 : 0;
@@ -26,12 +26,12 @@ double spline(int degree, double at) {
   return at <= 0.5 ? 0.75 - at * at : at < 1.5 ? 0.5 * (1.5 - at) * (1.5 - at) : 0;
 }
 
-/// V under the edge of a board is the sum of the splats of the texels beside it: a step of one texel, a line over one,
-/// and two parabolas over two.
+/// At the edge of a board V is the sum of the splats of nearby texels: a step with boxes, a linear ramp one texel wide
+/// with tents, and two parabolas over two texels with splines.
 TEST_F(ForwardMap, AnEdgeFadesAsItsSplatsDo) {
   scenes::Scene scene = bare_floor(0.3);
-  const double texel = 4.0 / 62;  // on the floor; the window has one more on either side
-  add_quad(scene, {1.5, 2, 0}, {1.5, 0, 0}, {0, 0, 1.8}).receives_shadow = false;  // from x = 0: between texels
+  const double texel = 4.0 / 62;  // texels on the floor; the window has one more on either side
+  add_quad(scene, {1.5, 2, 0}, {1.5, 0, 0}, {0, 0, 1.8}).receives_shadow = false;  // the edge, x = 0, is between texels
   std::vector<double> places;
   for (int i = -60; i <= 60; ++i) places.push_back(i / 30.0 * texel + 1e-7);
   const Stage stage = along_floor(scene, places, light_samples(1));
@@ -39,20 +39,20 @@ TEST_F(ForwardMap, AnEdgeFadesAsItsSplatsDo) {
     const char* shapes[] = {"box", "tent", "spline"};
     const Masks found = run(*maps::make_forward_map(device(), splat(shapes[degree])), stage);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const double s = -places[i] / texel;  // into the light
+      const double s = -places[i] / texel;  // distance into the light
       double expected = s > 0 ? 1 : 0;
       if (degree == 1) expected = std::clamp(s + 0.5, 0.0, 1.0);
       if (degree == 2)
         expected = s <= -1 ? 0 : s <= 0 ? 0.5 * (1 + s) * (1 + s) : s < 1 ? 1 - 0.5 * (1 - s) * (1 - s) : 1;
       if (degree == 0 && std::abs(s) < 0.01) continue;
-      // Places are rounded to 1/64 of a texel.
+      // Splat positions are rounded to 1/64 of a texel.
       EXPECT_NEAR(found.visibility[i], expected, 1.0 / 128 + 1e-4) << shapes[degree] << " " << s;
     }
   }
 }
 
-/// A caster is lit where splats land on it: splats end at its own outline, as the light sees it. A surface that casts
-/// no shadow is lit by all light that would pass it, so boxes give it the hard shadow.
+/// A caster is lit where splats land on it, and splats end at its outline as seen from the light. A surface that casts
+/// no shadow is lit by all light that would pass it, so with boxes it has the hard shadow.
 TEST_F(ForwardMap, SurfacesFadeAtTheirOwnOutline) {
   scenes::Scene scene = bare_floor(0.3);
   const double texel = 4.0 / 62, at_plate = texel * 3 / 5;
@@ -84,7 +84,8 @@ TEST_F(ForwardMap, SurfacesFadeAtTheirOwnOutline) {
             run(*maps::make_shadow_map(device(), {{"size", "64"}}), floor).visibility);
 }
 
-/// The paper's own direction: each texel that shows something throws its splat at every view sample of the picture.
+/// The paper's own order of loops: each texel that shows something splats its light onto every view sample of the
+/// picture.
 std::vector<double> thrown(const CentreMaps& drawn, const Stage& stage, int degree, double bias) {
   const std::uint32_t size = drawn.size;
   std::vector<double> sums(stage.samples.size(), 0);
@@ -132,11 +133,11 @@ TEST_F(ForwardMap, GathersWhatTexelsThrow) {
       if (stage.samples.triangle[i] < 0) continue;
       ++judged;
       soft += expected[i] > 0.02 && expected[i] < 0.98 ? 1 : 0;
-      // A place is rounded to 1/64 of a texel on either axis.
+      // Positions are rounded to 1/64 of a texel on either axis.
       off += std::abs(static_cast<double>(found.visibility[i]) - expected[i]) > 0.03 ? 1 : 0;
     }
     EXPECT_GT(soft, judged / 20);
-    EXPECT_LE(off, judged / 200) << "of " << judged;  // a surface a bias away, within rounding
+    EXPECT_LE(off, judged / 200) << "of " << judged;  // surfaces a bias away, within rounding
   }
 }
 

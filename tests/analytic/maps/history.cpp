@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// shadow-map:history: frames whose texels lie elsewhere, against the recurrence that mixes them and the hard shadow.
+// Tests shadow-map:history: frames with shifted texels, against the recurrence that mixes them and against the hard
+// shadow.
 
 #include "maps/filters/history.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -25,8 +26,8 @@ TEST(HistoryJitter, IsHaltons) {
   EXPECT_NEAR(glm::length(maps::jitter_of(6) - glm::dvec2(3.0 / 8 - 0.5, 2.0 / 9 - 0.5)), 0, 1e-12);
 }
 
-/// A board whose edge runs along the texels, over a floor that has 62 of them across 4, and one more on either side.
-/// Frame k sees the edge where the first of its texels' centres beyond it says.
+/// A board whose edge runs along the texels, over a floor 4 wide with 62 texels and one more on either side. Frame k
+/// sees the edge at the first texel centre beyond it.
 TEST_F(History, MixesByConfidence) {
   scenes::Scene scene = bare_floor(0.3);
   const double texel = 4.0 / 62;
@@ -41,7 +42,7 @@ TEST_F(History, MixesByConfidence) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     double mixed = 0;
     for (std::uint32_t frame = 0; frame < kFrames; ++frame) {
-      // The light's frame decides along which axis of the map x runs, and in which direction: here along u.
+      // The light's frame decides along which map axis x runs, and in which direction: here along u.
       const glm::dvec2 jitter = maps::jitter_of(frame);
       const double x = (places[i] + 2) / texel + 1 - jitter.x, z = (0.013 + 2) / texel + 1 - jitter.y;
       const double centre = std::floor(x) + 0.5, lit = (centre - 1 + jitter.x) * texel - 2 < edge ? 1 : 0;
@@ -55,7 +56,7 @@ TEST_F(History, MixesByConfidence) {
   EXPECT_LE(off, 2U) << "of " << places.size() << ": a texel's border within rounding";
 }
 
-/// A turned board: the more frames, the fewer pixels are on the wrong side; whatever the tiles.
+/// A turned board: more frames leave fewer pixels on the wrong side; tiles change nothing.
 TEST_F(History, ApproachesTheHardShadow) {
   scenes::Scene scene = bare_floor(0.3);
   const glm::dvec3 middle(0.11, 2, 0.07), u(0.62, 0, 0.23), v(-0.2, 0.0, 0.539130434782608);
@@ -104,8 +105,8 @@ class Reprojection : public MapsTest {
   }
 };
 
-/// V that a picture has for a place is what it shows there: here a plane's height over the floor. What it does not
-/// show, since the board is before it, or it is outside, has none.
+/// The test's picture stores a linear function of place as V. Reprojection must find this value at the same place;
+/// places that the earlier picture does not show, because the board hides them or they are outside, have no value.
 TEST_F(Reprojection, FindsTheSameSurface) {
   const Stage before = seen_from(0.9), now = seen_from(-0.4);
   visibility::KeptPicture kept{before.samples, {}};
@@ -119,7 +120,7 @@ TEST_F(Reprojection, FindsTheSameSurface) {
     if (now.samples.triangle[i] < 0 || p.y > 1) continue;
     const float v = maps::reprojected(kept, now.samples, i);
     const glm::dvec3 eye = before.samples.camera.eye + before.floats.origin;
-    // Well within the board's picture no neighbour is floor either.
+    // Well inside the board's image, so that no neighbouring pixel shows the floor either.
     const bool is_hidden = hides(eye, p) && hides(eye, p + glm::dvec3(0.15, 0, 0)) &&
                            hides(eye, p - glm::dvec3(0.15, 0, 0)) && hides(eye, p + glm::dvec3(0, 0, 0.15)) &&
                            hides(eye, p - glm::dvec3(0, 0, 0.15));
@@ -135,7 +136,7 @@ TEST_F(Reprojection, FindsTheSameSurface) {
   EXPECT_GT(hidden, 150U);
 }
 
-/// One map a frame, for many frames of a camera that stands still, and what history makes of them.
+/// A camera that stands still, one map per frame: after many frames the result is that of shadow-map:history.
 TEST_F(Reprojection, OfAStillCameraIsHistory) {
   const Stage stage = seen_from(0.5);
   visibility::FrameMemory memory;
@@ -153,7 +154,7 @@ TEST_F(Reprojection, OfAStillCameraIsHistory) {
 }
 
 /// A camera that moves along the floor: after some frames fewer pixels are on the wrong side of the shadow's edge than
-/// in a picture by itself.
+/// in a single picture.
 TEST_F(Reprojection, OfAMovingCameraApproachesTheHardShadow) {
   visibility::FrameMemory memory;
   const auto method = maps::make_shadow_map(device(), {{"size", "64"}, {"reproject", "on"}});

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what holds of methods on every scene: identities and inequalities between the pictures of two variants of a
-// method, and what no variant may do to any picture. One table for all methods; judged on shipped scenes, meshes with
-// every defect and soups on a small lattice, where a camera, a light and triangles coincide. I, B and A are the names
-// of docs/predicates.md.
+// Tests identities and inequalities between the pictures of two variants of a method, and properties that every picture
+// must have. One table for all methods; checked on shipped scenes, meshes with every defect, and soups on a small
+// lattice, where a camera, a light and triangles coincide. Names with I, B and A are rows of docs/predicates.md.
 
 #include "tests/analytic/maps/places.hpp"
 #include "tests/analytic/maps/map_variants.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 enum class Is : std::uint8_t {
   same,           ///< to the bit
-  no_brighter,    ///< at any pixel; of masks: hides every bit that the other hides
+  no_brighter,    ///< at any pixel; for masks, every bit that the other hides is hidden
   within,         ///< at every pixel, up to Identity::by
   same_or_black,  ///< to the bit, or 0 there
 };
@@ -58,8 +57,8 @@ constexpr Identity kIdentities[] = {
     {"dual", "contour:depth=dual:bias=0", Is::same, "contour:bias=0"},
     {"A9", "bitmask:bias=0", Is::no_brighter, "bitmask:depth=midpoint:bias=0"},
 };
-/// More identities, for the long test. (Without a bias the shadow of closed and open things begins at the first surface
-/// or behind it.)
+/// More identities, for the long test. (Without a bias the shadows of closed and of open things begin at or behind the
+/// first surface.)
 constexpr Identity kMoreIdentities[] = {
     {"I1", "soft-shadow-map:passes=2:filter=nearest", Is::no_brighter, "soft-shadow-map:filter=nearest"},
     {"I3", "packet", Is::same, "contour:search=none:traversal=flat"},
@@ -101,7 +100,7 @@ constexpr Identity kMoreIdentities[] = {
     {"A12", "backproject:bias=0.1:search=none", Is::no_brighter, "backproject:bias=2:search=none"},
 };
 
-/// Variant, and the number of steps of its V from 0 to 1; 0: the number of light samples.
+/// A variant, and the number of steps of its V from 0 to 1; 0 stands for the number of light samples.
 struct Levels {
   const char* variant;
   std::uint32_t of;
@@ -110,7 +109,7 @@ constexpr Levels kLevels[] = {{"shadow-map", 1}, {"pcf:window=5", 25},       {"p
                               {"bitmask", 0},    {"layer-rays:layers=2", 0}, {"bitmask:occluder=rect:level=1", 0},
                               {"accumulate", 0}, {"layered-attenuation", 0}, {"deep-penumbra:bound=0", 0}};
 
-/// Variants that are tested for everything that a picture must not depend on.
+/// Variants for the test of what no picture may depend on.
 constexpr const char* kVariants[] = {"shadow-map",
                                      "shadow-map:test=id",
                                      "accumulate",
@@ -158,7 +157,7 @@ constexpr const char* kVariants[] = {"shadow-map",
 
 class MapsIdentities : public MapsTest {
  protected:
-  /// Methods are made once, and their pictures of a place, too: pipelines take longer than small pictures.
+  /// Makes each method once, and each method's picture of a place once: pipelines take longer than small pictures.
   class Pictures {
    public:
     explicit Pictures(std::uint32_t size) : size_(fmt::format("{}", size)) {}
@@ -167,10 +166,10 @@ class MapsIdentities : public MapsTest {
       if (!made) made = MapVariant(words).with(sizes_of(words)).make(device());
       return *made;
     }
-    /// Returns null if the method refuses the light.
+    /// Returns nullptr if the method refuses the light.
     const Masks* of(const std::string& words, const Place& place) {
       if (place_ != place.name)
-        found_.clear();  // an address does not tell places apart: they are made one after the other
+        found_.clear();  // names, not addresses, tell places apart: places are made one after the other
       place_ = place.name;
       const auto [at, fresh] = found_.try_emplace(words);
       if (fresh && can(words, place.stage)) at->second = run(method(words), place.stage);
@@ -193,7 +192,7 @@ class MapsIdentities : public MapsTest {
     std::string place_;
   };
 
-  /// Returns the first pixel at which the identity does not hold; nullopt: it holds.
+  /// Returns the first pixel at which the identity does not hold, or nullopt.
   static std::optional<std::size_t> first_wrong(const Identity& identity, const Masks& a, const Masks& b) {
     for (std::size_t i = 0; i < a.visibility.size(); ++i) {
       const float v = a.visibility[i], w = b.visibility[i];
@@ -238,7 +237,7 @@ class MapsIdentities : public MapsTest {
       const double count = levels.of != 0 ? levels.of : place.stage.light.sample_count();
       std::set<float> values(found->visibility.begin(), found->visibility.end());
       for (const float v : values) {
-        // The nearest float of a whole number's share.
+        // V is the float nearest to the share of a whole number.
         EXPECT_EQ(v, static_cast<float>(std::round(count * static_cast<double>(v)) / count))
             << place.name << ", I10: " << levels.variant;
       }
@@ -246,7 +245,7 @@ class MapsIdentities : public MapsTest {
     }
   }
 
-  /// Expects I25, and V in [0, 1].
+  /// Expects row I25 (order, winding, tiles and repetition change nothing), and V in [0, 1].
   static void expect_independence(Pictures& pictures, const Place& place, const std::string& words) {
     const Masks* once = pictures.of(words, place);
     if (once == nullptr) return;
@@ -268,8 +267,8 @@ TEST_F(MapsIdentities, HoldBetweenVariants) {
   for (const Place& place : few_places()) expect_identities(pictures, place, kIdentities);
 }
 
-// A texel beside the kernel whose diagonal neighbour is beside it, too, and nearer than all in it: found on this
-// picture.
+// A texel outside the kernel whose diagonal neighbour is outside, too, and nearer than all texels in the kernel; this
+// scene has one.
 TEST_F(MapsIdentities, ASearchKnowsWhatDiagonalsReach) {
   constexpr Identity kDiagonals[] = {
       {"I5", "backproject:search=ysm:fill=diagonal", Is::same_or_black, "backproject:search=none:fill=diagonal"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// layered-attenuation's layers a texel, joined from the maps of many light samples, against the maps that they were
-// made of.
+// Tests layered-attenuation's layers per texel, which are joined from the maps of many light samples, against those
+// maps.
 
 #include "maps/products/lists/layered_depth.hpp"
 #include "maps/products/lists/layered_depth.shared.h"
@@ -20,11 +20,11 @@ class LayeredAttenuation : public MapLists {
  protected:
   static constexpr std::uint32_t kBoardSize = 40, kBoardSamples = 36;
   struct Layered {
-    std::vector<maps::gpu::LayerEntry> entries;  // as many for each texel
+    std::vector<maps::gpu::LayerEntry> entries;  // the same number for each texel
     std::size_t layers = 0;
-    std::vector<glm::dvec3> directions;  // of the texels' rays, 1 long along the light's normal
+    std::vector<glm::dvec3> directions;  // directions of the texels' rays, of length 1 along the light's normal
   };
-  /// A board over a floor, 3 below a light at 5; it rises by `tilt` toward x from its middle.
+  /// A board over a floor, 3 below a light at height 5; it is tilted about its middle and rises by `tilt` toward x.
   static Layered board_over_floor(double tilt) {
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -42,7 +42,7 @@ class LayeredAttenuation : public MapLists {
     }
     return found;
   }
-  /// The unsorted words of a layered depth image as entries.
+  /// Returns the unsorted words of a layered depth image as entries.
   static std::vector<maps::gpu::LayerEntry> entries_of(const maps::LayeredDepth& product, std::size_t texels) {
     std::vector<maps::gpu::LayerEntry> entries(texels * product.layers());
     product.buffer().read<maps::gpu::LayerEntry>(entries);
@@ -50,7 +50,7 @@ class LayeredAttenuation : public MapLists {
   }
 };
 
-// One sample at the centre: every texel's own depth once, and nothing else.
+// With one sample, at the centre, every texel holds its own depth once, and nothing else.
 TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
   constexpr std::uint32_t kSize = 32;
   for (const bool wall : {false, true}) {
@@ -75,7 +75,7 @@ TEST_F(LayeredAttenuation, OneMapFromTheCentreIsItself) {
     }
     const auto filled = static_cast<std::size_t>(std::ranges::count_if(depths, [](float depth) { return depth < 1; }));
     EXPECT_EQ(own, filled);
-    // Hemicubes: a texel beside an edge of the cube reaches onto the next face.
+    // In hemicubes, a texel beside an edge of the cube reaches onto the next face.
     EXPECT_LE(all, wall ? filled + filled / 4 : filled);
   }
 }
@@ -93,7 +93,8 @@ TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
       EXPECT_TRUE(is_floor || is_board) << entry.t;
       (is_floor ? floor : board) += entry.weight;
     }
-    // The board hides the floor from no sample where the centre's ray is far from it: |x| > 0.8 5/3 + 0.5 2/3 there.
+    // The board hides the floor from no sample where the centre's ray is far from the board: |x| > 0.8 5/3 + 0.5 2/3 on
+    // the floor.
     const glm::dvec3 at = 5.0 * found.directions[texel];
     const double out = std::max(std::abs(at.x), std::abs(at.z));
     const double texel_width = 6.0 / (kBoardSize - 2);
@@ -108,8 +109,8 @@ TEST_F(LayeredAttenuation, EveryMapCountsOnceAndTheFloorIsCoveredWithoutGaps) {
   EXPECT_EQ(uncovered, 0U);
 }
 
-// Images of one map's texels begin at all fractions of the centre's where a board is tilted: they would often meet the
-// middle of a gap of a fiftieth.
+// On a tilted board the images of a map's texels begin at all fractions of the centre's texels: if there were gaps of a
+// fiftieth, rays would often meet the middle of one.
 TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
   const Layered found = board_over_floor(0.08);
   const double texel_width = 6.0 / (kBoardSize - 2) * 3 / 5;
@@ -130,12 +131,12 @@ TEST_F(LayeredAttenuation, ATiltedBoardIsCoveredWithoutGaps) {
   EXPECT_GT(inside, 50U);
 }
 
-// A sample's texel covers those of the centre's texels whose centres lie in its image, and its image ends where its
-// neighbour's begins: on one plane where the plane crosses their border. So each of the centre's texels holds one
-// depth, and that is the board's where its own ray meets it, however steep the board is for the tolerance.
+// A sample's texel covers those of the centre's texels whose centres lie in its image. Its image ends where its
+// neighbour's begins: on one plane, where the plane crosses their border. So each of the centre's texels holds one
+// depth, and that is where its own ray meets the board, even if the board is steep compared with the tolerance.
 TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
   constexpr std::uint32_t kSize = 120;
-  constexpr double kAside = 0.9;  // the one sample stands so far beside the light's centre
+  constexpr double kAside = 0.9;  // distance of the only sample from the light's centre
   std::size_t compared = 0, on_borders = 0;
   const auto expect_depths = [&](double slope, double epsilon) {
     scenes::Scene scene;
@@ -164,7 +165,7 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
       const glm::dvec2 place = (across - from.lower) / (from.upper - from.lower) * static_cast<double>(kSize);
       const auto x = static_cast<std::uint32_t>(place.x), y = static_cast<std::uint32_t>(place.y);
       const double middle = from.direction(x, y, kSize).x;
-      // The surface, as seen from the sample, is at (3 - slope aside) / (1 + slope a) in the direction a.
+      // Seen from the sample, the surface's depth in the direction a is (3 - slope aside) / (1 + slope a).
       const auto depth = [&](double a) { return (3 - kAside * slope) / (1 + slope * a); };
       const glm::dvec2 beside = glm::abs(place - glm::round(place));
       if (std::min(beside.x, beside.y) < 0.01) {
@@ -178,22 +179,23 @@ TEST_F(LayeredAttenuation, ATexelEndsWhereTheSurfaceCrossesItsBorder) {
       }
       ++compared;
       ASSERT_EQ(found.size(), 1U) << "texel " << i << ", epsilon " << epsilon;
-      // The sample's texel's own depth is off by up to half of its difference to the next; the rasteriser's by 1/256 of
-      // that. Depths are means of two at borders: of 1/(1 + slope a) that is off by less than (slope texel)²/4 of them.
+      // The depth of the sample's texel is off by up to half of its difference to the next one, the rasteriser's by
+      // 1/256 of that. At borders the mean of two depths is used: for 1/(1 + slope a) its relative error is below
+      // (slope texel)²/4.
       EXPECT_NEAR(found.front(), std::abs(at.y), 0.02 * std::abs(depth(middle) - depth(middle - texel)))
           << "texel " << i << ", epsilon " << epsilon;
     }
   };
   expect_depths(0.1, 0.01);
-  // A slope of 45 degrees, on which neighbours are .0125 to .0165 of their depth apart.
+  // A slope of 45 degrees, on which neighbouring depths differ by 0.0125 to 0.0165 of their value.
   for (int i = 0; i < 14; ++i) expect_depths(1, 0.0131 + 0.00023 * i);
   EXPECT_GT(compared, 5000U);
   EXPECT_LT(10 * on_borders, compared);
 }
 
-// A slope whose neighbouring texels' depths differ by more than the tolerance, but by less than twice that: their
-// images from beside the centre overlap where the slope falls away from the sample, and both may be near one layer.
-// Samples weigh 1, 4, 16 and 64: one that counts twice sets an odd bit.
+// A slope on which the depths of neighbouring texels differ by more than the tolerance, but by less than twice that.
+// Seen from off the centre, their images overlap where the slope falls away from the sample, and both may be near one
+// layer. The samples' weights are 1, 4, 16 and 64, so that one that counts twice sets an odd bit.
 TEST_F(LayeredAttenuation, OnASteepSurfaceAMapCountsOnce) {
   constexpr std::uint32_t kSize = 40;
   std::size_t all = 0;
@@ -232,9 +234,9 @@ TEST_F(LayeredAttenuation, VCountsSamplesAndTendsToAccumulate) {
   EXPECT_LT(last, 0.015);
 }
 
-// A tolerance that is too small divides what samples see of a curved surface into layers, each seen by a part of them;
-// one that is too large takes what lies just below an occluder for the occluder. (All maps of one plane hold the same
-// places: their windows end where the receivers end.)
+// A tolerance that is too small splits a curved surface into layers, each seen by only some of the samples. One that is
+// too large takes what lies just below an occluder for the occluder. (All maps of one plane hold the same places: their
+// windows end where the receivers end.)
 TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact) {
   scenes::Scene round, contact;
   add_quad(round, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
@@ -242,7 +244,7 @@ TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact
   round.cameras.push_back(camera({0, 5.5, 2}, {0, 1, 0}, 35));
   add_quad(contact, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
   add_quad(contact, {-2, 0.2, 0}, {2, 0, 0}, {0, 0, 2.5}).receives_shadow = false;  // over one half of the floor
-  contact.cameras.push_back(camera({0, 0.1, 3}, {0, 0, 0}, 60));                    // from below the board
+  contact.cameras.push_back(camera({0, 0.1, 3}, {0, 0, 0}, 60));                    // looks from below the board
   struct Shares {
     double dark, leak;
   };
@@ -274,7 +276,7 @@ TEST_F(LayeredAttenuation, EpsilonTradesSpeckleOnCurvedSurfacesForLeaksAtContact
   EXPECT_GT(shares(contact, "0.06").leak, 0.5);
 }
 
-// All depths of a surface parallel to the light are the same except for rounding, which no epsilon excludes.
+// Depths of a surface parallel to the light are equal except for rounding, which even epsilon=0 must allow.
 TEST_F(LayeredAttenuation, WithoutEpsilonOrBiasAParallelFloorIsFound) {
   const Stage stage(parallel_square(), 32, 32, light_samples(16));
   const auto visibility = [&](const char* epsilon) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests layers of a map: what depth peeling finds, against every triangle at every texel in double, and what the option
-// `depth` makes of the first two.
+// Tests layers of a map: the surfaces that depth peeling finds, against every triangle at every texel in double, and
+// how the option `depth` uses the first two.
 
 #include "maps/filters/methods.hpp"
 #include "selftest/rasteriser_checks.hpp"
@@ -22,7 +22,7 @@ scenes::Scene stacked() {
   add_object(scene, "sphere", sphere({0.4, 1, 0.3}, 0.7, 6));
   add_quad(scene, {-0.6, 2.5, 0.2}, {1, 0.3, 0}, {0, 0.1, 0.9});
   add_quad(scene, {0.3, 3, -0.3}, {0.6, -0.1, 0.2}, {0, 0, 0.8});
-  add_quad(scene, {0.3, 3, -0.3}, {-0.6, 0.1, -0.2}, {0, 0, 0.8});  // again, the other way round
+  add_quad(scene, {0.3, 3, -0.3}, {-0.6, 0.1, -0.2}, {0, 0, 0.8});  // again, with the opposite winding
   scene.lights.push_back(ceiling_light(5, 0.5));
   scene.cameras.push_back(camera({0, 3, 8}, {0, 1, 0}));
   return scene;
@@ -43,7 +43,7 @@ TEST_F(MapsLayers, EachHoldsTheNextSurfaceAndTheFarthestTheLast) {
   }
 }
 
-// An open sheet over a floor that casts nothing: there is no second surface under it.
+// An open sheet over a floor that casts nothing: the sheet has no second surface.
 TEST_F(MapsLayers, AnOpenSheetCastsNothingByItsSecondSurfaceAndTheSameByAllOthers) {
   scenes::Scene scene = parallel_square();
   scene.objects[0].casts_shadow = false;
@@ -67,8 +67,8 @@ TEST_F(MapsLayers, AnOpenSheetCastsNothingByItsSecondSurfaceAndTheSameByAllOther
   }
 }
 
-/// A slab between heights 0.1 and 2.1 over a floor at 0, and view samples inside it, in its shadow's upper half and
-/// lower half: where each use of the depths says that the shadow begins.
+/// A slab between heights 0.1 and 2.1 over a floor at 0, and view samples in a column through it: for each use of the
+/// depths the shadow must begin where the option says.
 TEST_F(MapsLayers, AThickCasterBeginsToShadeWhereTheOptionSays) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
@@ -93,10 +93,11 @@ TEST_F(MapsLayers, AThickCasterBeginsToShadeWhereTheOptionSays) {
     return samples;
   };
   const Stage stage(scene, 1, kSide, light_samples(1), column);
-  // Light at 5: surfaces at depths 2.9 and 4.9, their middle at 3.9. The window holds the floor, ±2 / 5, and what
-  // stands above it: a texel is at most 4.2 / 5 / 62 wide, so the bias of 8 is 8 · 0.0135 · z, 0.32 … 0.35 around z
-  // = 3.2.
-  // vssm takes the bias off the receiver, and as much off what needs none: to a level receiver that is the same.
+  // With the light at 5, surfaces are at depths 2.9 and 4.9, their middle at 3.9. The window holds the floor, ±2 / 5,
+  // and what stands above it. A texel is at most 4.2 / 5 / 62 wide, so a bias of 8 is 8 · 0.0135 · z, 0.32 … 0.35
+  // around z = 3.2.
+  // vssm subtracts the bias from the receiver's depth, and the same amount from depths that need no bias: for a level
+  // receiver the result is the same.
   for (const Factory& factory : {Factory(maps::make_shadow_map), Factory(maps::make_vssm)}) {
     const auto begins_at = [&](const char* depth, const char* bias) {
       const Masks found = run(factory, stage, {{"size", "64"}, {"depth", depth}, {"bias", bias}});
@@ -120,8 +121,8 @@ TEST_F(MapsLayers, AThickCasterBeginsToShadeWhereTheOptionSays) {
   }
 }
 
-// A slab through the floor: in its upper side's shadow, not yet in its lower side's. soft-shadow-map asks at the floor
-// alone.
+// A slab through the floor: the floor is in the shadow of its upper side, but not of its lower side. (soft-shadow-map
+// has receivers on the floor only.)
 TEST_F(MapsLayers, ASlabThroughTheFloorShadesItAsTheOptionSays) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;
@@ -142,14 +143,14 @@ TEST_F(MapsLayers, ASlabThroughTheFloorShadesItAsTheOptionSays) {
     EXPECT_EQ(lit("first", "0", form), 0.0F);
     EXPECT_EQ(lit("second", "0", form), 1.0F);
     EXPECT_EQ(lit("midpoint", "0", form), 0.0F);
-    // A texel is 2/3 / 62 wide at depth 1: 50 of them at depth 5 are 2.7, more than what is between 3 and 5.
+    // A texel is 2/3 / 62 wide at depth 1: 50 of them at depth 5 are 2.7, more than the distance from 3 to 5.
     EXPECT_EQ(lit("first", "50", form), 1.0F);
     EXPECT_EQ(lit("midpoint", "50", form), 0.0F);
     EXPECT_EQ(lit("dual", "50", form), 0.0F);
   }
 }
 
-// The ground is no blocker of convolution's: a sheet over it has nothing behind it.
+// convolution does not take the ground for a blocker: a sheet over it has no second surface behind it.
 TEST_F(MapsLayers, ASheetOverTheGroundHasNoSecondSurfaceForConvolution) {
   const Stage stage(parallel_square(), 32, 32, light_samples(1));
   const ParallelSquare exact(stage);

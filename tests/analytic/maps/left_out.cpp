@@ -14,9 +14,9 @@ using visibility::MethodOptions;
 
 using MapsLeftOut = MapsTest;
 
-// Far above rounding of depths, 2⁻²⁴, and far below any share by which a bound could be wrong.
+// The gaps are far above the rounding of depths, 2⁻²⁴, and far below any share by which a bound could be wrong.
 TEST_F(MapsLeftOut, NothingThatIsJustAboveTheFloor) {
-  for (const double gap : {1e-2, 1e-3, 1e-4}) {  // of the light's height
+  for (const double gap : {1e-2, 1e-3, 1e-4}) {  // share of the light's height
     scenes::Scene scene = bare_floor(0.8);
     add_quad(scene, {0.1, 5 * gap, 0}, {0.9, 0, 0}, {0, 0, -0.7}).receives_shadow = false;
     const Stage stage = on_floor(scene, 24, light_samples(16));
@@ -32,7 +32,7 @@ TEST_F(MapsLeftOut, NothingThatIsJustAboveTheFloor) {
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
         const double outside = std::max(std::abs(p.x - 0.1) - 0.9, std::abs(p.z) - 0.7);
-        if (std::abs(outside) < 0.1) continue;  // a texel and the penumbra are 0.08 together, at most
+        if (std::abs(outside) < 0.1) continue;  // the width of a texel and the penumbra together is at most 0.08
         EXPECT_EQ(found.visibility[i], outside > 0 ? 1 : 0) << name << ", gap " << gap << ", pixel " << i;
         ++(outside > 0 ? lit : dark);
       }
@@ -42,9 +42,9 @@ TEST_F(MapsLeftOut, NothingThatIsJustAboveTheFloor) {
   }
 }
 
-// A long light, whose image is 240 texels wide, and a caster that hides the first few of them. Bounds of the image may
-// be off by a few hundredths of what the caster hides. The caster's edge stands at each place in a tile of eight
-// texels.
+// A long light whose image is 240 texels wide, and a caster that hides the first few of them. Bounds of the image may
+// be wrong by a few hundredths of what the caster hides. The caster's edge is placed at each position in a tile of
+// eight texels.
 TEST_F(MapsLeftOut, NothingThatIsSeenOnTheLightsBorder) {
   constexpr std::uint32_t kSize = 256;
   constexpr double kTexel = 1.6 * 2 / 240;
@@ -55,7 +55,7 @@ TEST_F(MapsLeftOut, NothingThatIsSeenOnTheLightsBorder) {
   for (int step = 0; step < 8; ++step) {
     scenes::Scene scene = bare_floor(1, 0.5);
     scene.lights.front() = rectangle_light({0, 5, 0}, {2, 0, 0}, {0, 0, 0.05});
-    // The light's border is seen from a floor at 5 below, 1 below the light, at x / 5 - 1.6.
+    // Seen from the floor at 5 below the light, the light's border appears 1 below the light at x / 5 - 1.6.
     const double edge = -1.6 + step * kTexel;
     add_quad(scene, {edge - 0.25, 4, 0}, {0.25, 0, 0}, {0, 0, -0.5}).receives_shadow = false;
     const Stage stage = along_floor(scene, places, light_samples(1));
@@ -76,7 +76,7 @@ TEST_F(MapsLeftOut, NothingThatIsSeenOnTheLightsBorder) {
   }
   fmt::print("{} of {} on the light's border; off by at most {:.2g}\n", on_border, 8 * places.size(), most);
   EXPECT_GT(on_border, 100U);
-  EXPECT_LT(most, 1e-4);  // as of backproject's sum of all texels: two borders, each some 2⁻²⁰ off
+  EXPECT_LT(most, 1e-4);  // as for backproject's sum over all texels: two borders, each about 2⁻²⁰ off
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what holds on every scene between one light and its parts or its corners (docs/predicates.md: I4, I19, I20).
+// Tests relations that hold on every scene between a light and its parts or corners (docs/predicates.md: I4, I19, I20).
 
 #include "maps/backprojection/contours/methods.hpp"
 #include "tests/analytic/maps/adaptive_light.hpp"
@@ -17,8 +17,8 @@ class LightIdentities : public AdaptiveLight {
     return light.kind == visibility::LightKind::rectangle && !light.texture;
   }
 
-  /// I4 (Yang et al. 2009, section 5): `packet` with sub-lights is the mean of `contour` under each of them. False
-  /// where their maps are not the same ones: of all points of a light either all have windows or all hemicubes.
+  /// I4 (Yang et al. 2009, section 5): `packet` with sub-lights is the mean of `contour` under each sub-light. Returns
+  /// false if their maps differ: all points of one light have either windows or hemicubes.
   static bool expect_mean_of_parts(const Place& place) {
     const Stage& stage = place.stage;
     const auto packet = maps::make_packet(device(), {{"size", kSize}, {"sublights", "2"}});
@@ -34,14 +34,14 @@ class LightIdentities : public AdaptiveLight {
       faces += contour->counters().at("mapFaces");
     }
     if (faces != packet->counters().at("mapFaces")) return false;
-    // Areas are added in parts of 2^-22 of the light, an edge at a time. A light that is not along the scene's axes is
-    // rounded otherwise than its part, so that tangents differ by some eight roundings of 2^-24 of the window. On the
-    // light that is f / l times as much of it, f = z z' / (z - z'), where the bias keeps occluders at least half a
-    // texel away from a pixel at height z over the light, 1 - z' / z > 1/2 of 1/kSize of the window: in all
-    // 8 kSize 2^-24 z / l.
+    // Areas are added in units of 2^-22 of the light, one edge at a time. The rounding of a light that is not along the
+    // scene's axes differs from that of its parts, so that tangents differ by about eight roundings of 2^-24 of the
+    // window. On the light that is f / l times as large, with f = z z' / (z - z'). The bias keeps occluders at least
+    // half a texel away from a pixel at height z over the light: 1 - z' / z > 1/2 of 1/kSize of the window. The total
+    // is 8 kSize 2^-24 z / l.
     const maps::LightBasis basis = maps::light_basis(stage.light);
     const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
-    const double least = 0.5 * std::min(bounds.upper.x, bounds.upper.y);  // of a part
+    const double least = 0.5 * std::min(bounds.upper.x, bounds.upper.y);  // of a part's half-sides
     for (std::size_t i = 0; i < mean.size(); ++i) {
       const double off = std::abs(mean[i] - static_cast<double>(whole.visibility[i]));
       const double z = std::abs(basis.local(stage.samples.p[i]).z);
@@ -50,8 +50,8 @@ class LightIdentities : public AdaptiveLight {
     return true;
   }
 
-  /// I19 (Schwaerzler, equations 2, 5, 6): without tolerance it is `accumulate` over the corners of all cells. I20:
-  /// fewer maps for larger epsilon and gamma, never fewer than 4, never more than all corners.
+  /// I19 (Schwaerzler, equations 2, 5, 6): without tolerance adaptive-light is `accumulate` over the corners of all
+  /// cells. I20: larger epsilon and gamma give fewer maps, never fewer than 4 and never more than all corners.
   static void expect_adaptive(const Place& place) {
     Stage stage = place.stage;
     const MethodOptions without{{"size", kSize}, {"levels", "2"}, {"epsilon", "0"}, {"pcf", "off"}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cells of adaptive-light, without a device: what is shared, what a bound on points does, and what the weights are.
+// Tests the cells of adaptive-light, without a device: which points they share, how a bound on points acts, and the
+// weights.
 
 #include "maps/sampling/light_tree.hpp"
 
@@ -38,7 +39,7 @@ TEST(LightTree, AllCellsSplitGiveEveryPointOnceWithThePapersWeights) {
     const LightTree area = whole(LightTree::Shape::area, levels), line = whole(LightTree::Shape::line, levels);
     EXPECT_EQ(area.points().size(), across * across);
     EXPECT_EQ(line.points().size(), across);
-    // Equations 5 and 6: all alike, and 1 in all.
+    // Equations 5 and 6: all weights are equal, and their sum is 1.
     for (const auto& [tree, weight] : {std::pair(&area, 1.0 / static_cast<double>(across * across)),
                                        std::pair(&line, 1.0 / static_cast<double>(across))}) {
       const std::vector<double> weights = tree->weights(PointWeights::paper, even);
@@ -53,7 +54,7 @@ TEST(LightTree, WithoutASplitThereAreTheCornersAlone) {
   LightTree area(LightTree::Shape::area, 3), line(LightTree::Shape::line, 3);
   ASSERT_EQ(area.pairs().size(), 2U);
   ASSERT_EQ(line.pairs().size(), 1U);
-  // Opposite corners: each pair lies on a diagonal.
+  // Pairs are opposite corners: each pair lies on a diagonal.
   for (const LightTree::Pair& pair : area.pairs()) {
     const glm::uvec2 a = area.points()[pair.a], b = area.points()[pair.b];
     EXPECT_NE(a.x, b.x);
@@ -66,14 +67,14 @@ TEST(LightTree, WithoutASplitThereAreTheCornersAlone) {
   EXPECT_EQ(line.points().size(), 2U);
 }
 
-// 5 new points with nothing around it, down to 1 between four split cells: no cell adds more than 5.
+// A cell adds 5 new points if no neighbour is split, down to 1 between four split cells, and never more than 5.
 TEST(LightTree, ACellAddsOneToFivePointsAndNeighboursShareThem) {
   std::mt19937 random(7);
   std::set<std::size_t> seen;
   for (int trial = 0; trial < 200; ++trial) {
     LightTree tree(LightTree::Shape::area, 4);
     while (!tree.pairs().empty()) {
-      // One cell at a time would be another order; a bound that stops after each cell shows what each adds.
+      // Splitting single cells would give another order; so only passes that split one cell show what it adds.
       const std::size_t before = tree.points().size(), cells = tree.pairs().size() / 2;
       std::vector<std::uint8_t> differs(2 * cells, 0);
       for (std::uint8_t& answer : differs) answer = random() % 3 == 0 ? 1 : 0;
@@ -114,7 +115,8 @@ TEST(LightTree, ABoundOnPointsIsKeptAndStopsTheLaterCellsOfALevel) {
   }
 }
 
-// One corner refined twice. A point's depth is the deepest cell's at it, also where a whole cell has it for a corner.
+// One corner is refined twice. A point's depth is that of the deepest cell that touches it, even if it is a corner of a
+// cell that is not split.
 TEST(LightTree, WeightsOfUnevenCells) {
   LightTree tree(LightTree::Shape::area, 2);
   tree.split(std::vector<std::uint8_t>{1, 0}, 100);
@@ -126,14 +128,14 @@ TEST(LightTree, WeightsOfUnevenCells) {
   const std::vector<double> paper = tree.weights(PointWeights::paper, even),
                             area = tree.weights(PointWeights::area, even);
   for (std::size_t i = 0; i < tree.points().size(); ++i) {
-    const glm::uvec2 at = tree.points()[i];  // in quarters
+    const glm::uvec2 at = tree.points()[i];  // in units of a quarter
     const bool fine = at.x <= 2 && at.y <= 2;
     EXPECT_DOUBLE_EQ(paper[i], fine ? 1.0 / 25 : 1.0 / 9) << at.x << ", " << at.y;
   }
   const auto weight = [&](glm::uvec2 at) {
     return area[static_cast<std::size_t>(std::ranges::find(tree.points(), at) - tree.points().begin())];
   };
-  // Shares of the cells' areas: quarters of 1/16 and of 1/4.
+  // A point weighs a quarter of the area of each cell that it is a corner of: quarters of 1/16 and of 1/4.
   EXPECT_DOUBLE_EQ(weight({0, 0}), 1.0 / 64);
   EXPECT_DOUBLE_EQ(weight({1, 1}), 4.0 / 64);
   EXPECT_DOUBLE_EQ(weight({2, 2}), 1.0 / 64 + 3.0 / 16);
@@ -143,7 +145,7 @@ TEST(LightTree, WeightsOfUnevenCells) {
 
 TEST(LightTree, UnevenLightWeighsPointsByTheLightOfTheirCells) {
   const LightTree tree = whole(LightTree::Shape::area, 2);
-  // All light in the half x > 1/2.
+  // All light comes from the half x > 1/2.
   const auto right = [](const glm::dvec2& lower, const glm::dvec2& upper) {
     return std::max(0.0, upper.x - std::max(lower.x, 0.5)) * (upper.y - lower.y);
   };

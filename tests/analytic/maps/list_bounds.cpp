@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests bounds of lists of depths of a texel to the last step: how few steps deep-penumbra keeps, where its rays begin,
-// and from which difference on layered-attenuation takes two surfaces for one.
+// Tests bounds of depth lists as tightly as they can be: how few steps deep-penumbra keeps, where its rays begin, and
+// from which difference on layered-attenuation keeps two surfaces apart.
 
 #include "maps/products/lists/penumbra_events.hpp"
 #include "maps/sampling/methods.hpp"
@@ -17,8 +17,8 @@ namespace {
 
 class MapListBounds : public MapsTest {};
 
-// Lists have as few steps as the bound allows, by weights of 64 samples: a piece goes on while its values lie within
-// twice the bound, or within the bound if one of them is all of the light or nothing of it.
+// Lists have as few steps as the bound allows, counted in 64 samples: a piece continues while its values lie within
+// twice the bound, or within the bound if one of them is the whole light or none of it.
 TEST_F(MapListBounds, StepsAreAsFewAsTheBoundAllows) {
   constexpr std::uint32_t kSize = 24, kSamples = 64;
   const Stage stage(selftest::crowd(false, false), 4, 4, light_samples(kSamples));
@@ -37,7 +37,7 @@ TEST_F(MapListBounds, StepsAreAsFewAsTheBoundAllows) {
     const auto tolerance = static_cast<int>(2 * bound * kSamples);
     for (std::size_t texel = 0; texel < kTexels; ++texel) {
       int low = kSamples, high = kSamples;
-      std::uint32_t pieces = 1;  // the first, lit, has no step
+      std::uint32_t pieces = 1;  // the first piece, fully lit, has no step
       for (std::uint32_t k = all[texel]; k < all[texel + 1]; ++k) {
         const float v = std::bit_cast<float>(all[kTexels + 2 + 2 * std::size_t{k}]);
         const auto visible = static_cast<int>(std::lround(v * static_cast<float>(kSamples)));
@@ -53,7 +53,7 @@ TEST_F(MapListBounds, StepsAreAsFewAsTheBoundAllows) {
   }
 }
 
-// A board 1 % behind the nearest caster: rays are walked from no farther on than that.
+// A board 1 % behind the nearest caster: rays must be followed from there or nearer.
 TEST_F(MapListBounds, WhatIsJustBehindTheNearestCasterIsInItsShadow) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -78,15 +78,15 @@ TEST_F(MapListBounds, WhatIsJustBehindTheNearestCasterIsInItsShadow) {
   for (const float v : run(maps::make_deep_penumbra, stage, {{"size", "256"}}).visibility) EXPECT_EQ(v, 0.0F);
 }
 
-// A board 0.2 above one half of a floor that is 5 below the light: depths differ by 0.04 of themselves. A smaller
-// epsilon takes nothing for the same that is not, whichever it is; a larger one takes the floor in the shadow for the
-// board.
+// A board 0.2 above one half of a floor that is 5 below the light: the depths differ by 0.04 of their value. With a
+// smaller epsilon, whatever its value, board and floor stay apart; with a larger one the floor in the shadow is taken
+// for the board.
 TEST_F(MapListBounds, EpsilonActsFromTheGapOn) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
   add_quad(scene, {-2, 0.2, 0}, {2, 0, 0}, {0, 0, 2.5}).receives_shadow = false;
   scene.lights.push_back(ceiling_light(5, 0.4));
-  scene.cameras.push_back(camera({0, 0.1, 3}, {0, 0, 0}, 60));  // from below the board
+  scene.cameras.push_back(camera({0, 0.1, 3}, {0, 0, 0}, 60));  // looks from below the board
   const Stage stage(scene, 48, 48, light_samples(36));
   const auto with = [&](const char* epsilon) {
     return run(maps::make_layered_attenuation, stage, {{"size", "128"}, {"bias", "0"}, {"epsilon", epsilon}});

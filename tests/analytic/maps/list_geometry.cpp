@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests lists of depths where they are right to a texel's hundredth or to a light sample: at borders of a hemicube's
-// faces, and at receivers' horizons.
+// Tests depth lists to a hundredth of a texel or to one light sample: at borders of a hemicube's faces, and at
+// receivers' horizons.
 
 #include "tests/analytic/maps/fixture.hpp"
 
@@ -19,10 +19,10 @@ namespace {
 class LayeredHemicubes : public MapsTest {};
 class ListHorizons : public MapsTest {};
 
-// A sample nearer to a wall than the light's centre is sees below itself what the centre sees sideways. A texel's depth
-// is the wall's where the ray through the texel's middle meets it, so that its place there is as far sideways as the
-// wall is; a middle that is aside by a share of the texel puts the place that share of its width before or behind the
-// wall.
+// A sample nearer to a wall than the light's centre sees below itself what the centre sees sideways. An entry's depth
+// is the wall's where the ray through the texel's middle meets it, so that it lies exactly on the wall. If a texel's
+// middle were off by a share of the texel, the entry would be in front of or behind the wall by that share of its
+// width.
 TEST_F(LayeredHemicubes, AWallIsAsFarAsItIsFromWhicheverFaceItWasSeen) {
   constexpr std::uint32_t kSize = 60;
   constexpr double kWall = 2, kAside = 0.6;
@@ -44,23 +44,23 @@ TEST_F(LayeredHemicubes, AWallIsAsFarAsItIsFromWhicheverFaceItWasSeen) {
     const auto face = maps::face_of(made.centre.views.front(), made.basis, texel / (kSize * kSize));
     if (glm::dot(face.w, glm::dvec3(1, 0, 0)) < 0.9) continue;
     const glm::dvec3 at = kWall * face.direction(texel % kSize, texel / kSize % kSize, kSize);
-    // Texels below 45 degrees as the sample sees them, above as the centre does; with room for the images of texels
-    // that reach across.
+    // Texels that the sample sees below 45 degrees and the centre above; with a margin for the images of texels that
+    // reach across.
     const double below = -at.y;
     if (below < kWall - kAside + 0.15 || below > kWall || std::abs(at.z) > below - 0.15) continue;
     for (std::size_t e = 0; e < product.layers(); ++e) {
       const auto& entry = entries[std::size_t{texel} * product.layers() + e];
       if (entry.weight == 0) continue;
       ++compared;
-      // A texel below the sample is 2 / 60 wide at depth 1; rasterisers put corners on 1/256 of that.
+      // A texel below the sample is 2 / 60 wide at depth 1; rasterisers snap corners to 1/256 of that.
       EXPECT_NEAR(entry.t, kWall, 0.01 * 2 / kSize * (below + 0.15)) << "texel " << texel;
     }
   }
   EXPECT_GT(compared, 100U);
 }
 
-// Each receiver sees the light samples above its own plane, and no others, where nothing casts: on a ball under a wide
-// light planes cut the light everywhere.
+// Where nothing casts, each receiver sees exactly the light samples above its own plane. On a ball under a wide light
+// these planes cut the light everywhere.
 TEST_F(ListHorizons, WhereNothingCastsTheSamplesAboveTheHorizonAreCounted) {
   constexpr int kSamples = 64;
   scenes::Scene scene;
@@ -81,9 +81,9 @@ TEST_F(ListHorizons, WhereNothingCastsTheSamplesAboveTheHorizonAreCounted) {
         above += height > 0 ? 1 : 0;
         nearest = std::min(nearest, std::abs(height));
       }
-      if (nearest < 1e-5) continue;  // floats may say either
+      if (nearest < 1e-5) continue;  // rounding of floats may decide either way
       cut += above > 0 && above < kSamples ? 1 : 0;
-      // Some maps know nothing of a surface that is seen from beside it: layered attenuation may count fewer.
+      // Some maps do not hold a surface that they would see edge-on: layered-attenuation may count fewer.
       EXPECT_LE(found.visibility[i] * kSamples, above) << "pixel " << i;
       all += found.visibility[i] * kSamples == static_cast<float>(above) ? 1 : 0;
       ++compared;

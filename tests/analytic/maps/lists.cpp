@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// deep-penumbra's steps, joined from the maps of many light samples, against twins and against the maps that they were
-// made of; and what holds of all methods with lists.
+// Tests deep-penumbra's steps, which are joined from the maps of many light samples, against twins and against those
+// maps; and properties of all methods with depth lists.
 
 #include "maps/products/lists/penumbra_events.hpp"
 #include "tests/analytic/maps/lists.hpp"
@@ -18,7 +18,7 @@ using visibility::MethodOptions;
 
 class DeepPenumbra : public MapLists {};
 
-// Each sample's map asked at places along each texel's ray, in double: behind what it holds, or not.
+// The twin tests places along each texel's ray against each sample's map, in double.
 TEST_F(DeepPenumbra, StepsAreTheirTwinAlongEveryRay) {
   constexpr std::uint32_t kSize = 12;
   for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
@@ -49,7 +49,7 @@ TEST_F(DeepPenumbra, CompressedStepsStayWithinTheBoundEverywhere) {
     double worst = 0;
     for (std::size_t texel = 0; texel < kTexels; ++texel) {
       for (std::uint32_t k = all[texel]; k < all[texel + 1]; ++k) {
-        // V is constant between two events: ask just behind each.
+        // V is constant between two events: read it just behind each.
         const float t = std::nextafter(std::bit_cast<float>(all[kTexels + 1 + 2 * std::size_t{k}]), 1e30F);
         const float exact = selftest::stepped(all, kTexels, texel, t),
                     found = selftest::stepped(words, kTexels, texel, t);
@@ -69,7 +69,7 @@ TEST_F(DeepPenumbra, CompressedStepsStayWithinTheBoundEverywhere) {
   }
 }
 
-// One sample at the light's centre: the ray through a texel stays in that texel of the sample's map.
+// With one sample, at the light's centre, the ray through a texel stays in that texel of the sample's map.
 TEST_F(DeepPenumbra, WithTheCentreAloneItIsTheShadowMap) {
   for (const auto& [wall, two_sided] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
     const Stage stage(crowded(wall, two_sided), 48, 48, light_samples(1));
@@ -83,7 +83,8 @@ TEST_F(DeepPenumbra, WithTheCentreAloneItIsTheShadowMap) {
   }
 }
 
-// Half a texel moves an edge over whole rows of samples: the error goes with the root of the texel.
+// Half a texel moves an edge over whole rows of samples: the error is proportional to the square root of the texel's
+// width.
 TEST_F(DeepPenumbra, TendsToAccumulateOnTheSameSamples) {
   const Stage stage(parallel_square(), 48, 48, light_samples(64));
   const Masks truth = run(maps::make_accumulate, stage, {{"size", "1024"}});
@@ -118,7 +119,7 @@ TEST_F(MapLists, TilesAndRepetitionChangeNothingAndVIsDefinedEverywhere) {
         for (const float v : once.visibility) EXPECT_TRUE(v >= 0 && v <= 1) << v;
       }
     }
-    // A texture weighs samples: close to accumulate, which takes the same weights.
+    // A texture weights samples: V is close to that of accumulate, which uses the same weights.
     const Stage stage(textured, 32, 32, light_samples(36));
     EXPECT_LT(
         distance(stage, run(factory, stage, {{"size", "256"}}), run(maps::make_accumulate, stage, {{"size", "256"}})),

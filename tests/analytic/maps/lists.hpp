@@ -11,7 +11,7 @@
 
 namespace penumbra::tests {
 
-/// A board and a sphere over a floor; with a wall up to beyond the light hemicubes are needed.
+/// A board and a sphere over a floor; the wall reaches above the light, so that hemicubes are needed.
 inline scenes::Scene crowded(bool wall, bool two_sided) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -38,7 +38,7 @@ class MapLists : public MapsTest {
   }
 };
 
-/// RMSE over what is not background.
+/// RMSE over all pixels but the background.
 inline double distance(const Stage& stage, const Masks& a, const Masks& b) {
   return rmse(
       stage, [&](std::size_t i) { return stage.samples.triangle[i] >= 0; },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fits of maps to what a camera sees, in closed form: the papers' distances, warps and frustum faces, and the squares
-// that queries leave.
+// Tests fits of maps to a camera's view in closed form: the papers' distances, warps and frustum faces, and the squares
+// that queried tiles leave.
 
 #include "maps/host/base_face.hpp"
 #include "maps/host/face_fit.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kBeyond = std::numeric_limits<double>::infinity();
 
-// Eisemann et al. 2009, section 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix it with equal slices.
+// Eisemann et al. 2009, section 3.2.3.1: C_i = z_n (z_f / z_n)^(i/m); Zhang et al. 2006 mix these with equal slices.
 TEST(MapFits, SlicesEndWhereThePapersSay) {
   maps::ViewFit fit{.fit = maps::Fit::cascades, .split_share = 0.5};
   EXPECT_EQ(fit.slices(), 4U);
@@ -36,16 +36,16 @@ TEST(MapFits, SlicesEndWhereThePapersSay) {
   expect(ends(maps::Split::logarithmic), {1, 3, 9, 27, 81});
   expect(ends(maps::Split::uniform), {1, 21, 41, 61, 81});
   expect(ends(maps::Split::practical), {1, 12, 25, 44, 81});
-  fit.split_share = 0.05;  // from 5 on
+  fit.split_share = 0.05;  // from depth 5 on
   const double step = std::pow(81.0 / 5, 0.25);
   expect(ends(maps::Split::pseudo_near), {1, 5 * step, 5 * step * step, 5 * step * step * step, 81});
 }
 
 TEST(MapFits, DistancesAreThePapers) {
-  // Wimmer et al. 2004: z_n + sqrt(z_n z_f), over the sine.
+  // Wimmer et al. 2004: (z_n + sqrt(z_n z_f)) over the sine.
   EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 1), 5);
   EXPECT_DOUBLE_EQ(maps::lispsm_distance(1, 16, 0.5), 10);
-  // Martin and Tan 2004: the focus region fills four fifths: 0.8 = (n + d)/d · f/(f + n).
+  // Martin and Tan 2004: the focus region covers four fifths: 0.8 = (n + d)/d · f/(f + n).
   const double n = maps::tsm_distance(8, 2);
   EXPECT_NEAR((n + 8) / 8 * 2 / (2 + n), 0.8, 1e-12);
   EXPECT_EQ(maps::tsm_distance(8, 6.4), kBeyond);
@@ -95,42 +95,42 @@ class Overhead : public testing::Test {
 
 TEST_F(Overhead, ErrorsAlongTheViewAreThoseOfTheNotes) {
   const double ratio = kFar / kNear, length = kFar - kNear;
-  // Uniform: dz/ds is the length.
+  // Uniform: dz/ds is the length of the depth range.
   const maps::FittedFace uniform = face(maps::Fit::view);
   EXPECT_NEAR(errors(uniform, kNear).y, length / kNear, 1e-6 * length);
   EXPECT_NEAR(errors(uniform, kFar).y, length / kFar, 1e-6);
-  // PSM: constant across; along, it grows as z.
+  // PSM: the error is constant across the view, and grows as z along it.
   const maps::FittedFace psm = face(maps::Fit::psm);
   EXPECT_NEAR(errors(psm, kFar).x / errors(psm, kNear).x, 1, 1e-3);
   EXPECT_NEAR(errors(psm, kFar).y / errors(psm, kNear).y, ratio, 1e-3 * ratio);
   EXPECT_NEAR(errors(psm, 5).y / errors(psm, kNear).y, 5, 5e-3);
-  // LiSPSM: n_opt is where both ends have the same error, the uniform one times sqrt(z_n / z_f), and less between.
+  // LiSPSM: at n_opt both ends have the same error, sqrt(z_n / z_f) times the uniform one; in between it is smaller.
   const maps::FittedFace lispsm = face(maps::Fit::lispsm);
   const double most = length / kNear / std::sqrt(ratio);
   EXPECT_NEAR(errors(lispsm, kNear).y, most, 1e-4 * most);
   EXPECT_NEAR(errors(lispsm, kFar).y, most, 1e-4 * most);
   EXPECT_LT(errors(lispsm, 5).y, 0.6 * most);
-  // LogPSM: constant along both, the logarithm of the depths' ratio along the view.
+  // LogPSM: the error is constant in both directions; along the view it is the logarithm of the depths' ratio.
   const maps::FittedFace logpsm = face(maps::Fit::logpsm);
   for (const double z : {1.0, 2.0, 7.0, 25.0}) {
     EXPECT_NEAR(errors(logpsm, z).x, errors(logpsm, kNear).x, 1e-3 * errors(logpsm, kNear).x);
     EXPECT_NEAR(errors(logpsm, z).y, std::log(ratio), 1e-3) << z;
   }
-  // TSM: a quarter of the depths has four fifths of the rows.
+  // TSM: the first quarter of the depths gets four fifths of the rows.
   const maps::FittedFace tsm = face(maps::Fit::tsm);
   const auto row = [&](double z) { return tsm.place({0, z, kHeight})->y; };
   EXPECT_NEAR((row(kNear + 0.25 * length) - row(kNear + 1e-9)) / (row(kFar - 1e-9) - row(kNear + 1e-9)), 0.8, 1e-4);
 }
 
-// Wimmer et al. 2004: at any angle γ between the view and parallel light, the errors of LiSPSM along the view are equal
-// at both ends of a level surface across the light. The eye's image may lie among the points: the surface is below the
-// eye.
+// Wimmer et al. 2004: at any angle γ between the view and parallel light, LiSPSM's errors along the view are equal at
+// both ends of a level surface across the light. The eye's image may lie among the points, because the surface may be
+// below the eye.
 TEST(MapFits, LiSPSMHasEqualErrorsAtBothEndsOfATiltedView) {
   constexpr double kHeight = 1e5, kLength = 24, kDepth = 2;
   for (const double degrees : {75.0, 60.0, 30.0, 15.0}) {
     const double sine = std::sin(glm::radians(degrees)), cosine = std::cos(glm::radians(degrees));
     for (const double first : {-1.5, 0.0, 1.5}) {
-      // The point (0, first, kHeight) is kDepth before the eye, which is seen at b = 0.
+      // The point (0, first, kHeight) is kDepth in front of the eye, whose image is at b = 0.
       const glm::dvec3 forward(0, sine, cosine);
       const double below = (kDepth - first * sine) / cosine;
       std::vector<glm::dvec3> points;
@@ -172,8 +172,8 @@ TEST_F(Overhead, PlacesAndDirectionsAreInverse) {
   }
 }
 
-// Brabec et al. 2002: a direction at the angle θ from the axis is seen tan(θ/2) from the middle; the circle, θ = 90°,
-// is two texels from the sides. Changes are those of places.
+// Brabec et al. 2002: a direction at the angle θ from the axis is mapped to tan(θ/2) from the middle; the circle, θ =
+// 90°, is two texels inside the sides. Derivatives agree with differences of places.
 TEST(MapFits, AParaboloidSeesAHalfSpaceInACircle) {
   const maps::FittedFace face = maps::paraboloid_face(0, 64, 2);
   for (const double degrees : {0.0, 30.0, 60.0, 89.9}) {
@@ -194,7 +194,7 @@ TEST(MapFits, AParaboloidSeesAHalfSpaceInACircle) {
 }
 
 // A camera that moves by less than a texel, or turns a little, does not move texels: their borders are multiples of a
-// width that takes steps.
+// width that changes in steps.
 TEST(MapFits, SnappedTexelsStayWhereTheyAre) {
   std::set<double> widths;
   for (int i = 0; i < 200; ++i) {
@@ -210,8 +210,8 @@ TEST(MapFits, SnappedTexelsStayWhereTheyAre) {
   EXPECT_EQ(widths.size(), 1U);
 }
 
-// Kozlov 2004: a ray leaves the frustum through one of its faces. Of a side, places are those along the picture's
-// border and the inverse of the depth; of the ends, those in the picture.
+// Kozlov 2004: a ray leaves the frustum through one of its faces. Coordinates on a side face are the position along the
+// picture's border and the inverse depth; on the near and far faces they are those in the picture.
 TEST(MapFits, RaysLeaveAFrustumThroughTheFaceThatSaysSo) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> anywhere(-1, 1), share(0, 1);
@@ -231,7 +231,7 @@ TEST(MapFits, RaysLeaveAFrustumThroughTheFaceThatSaysSo) {
                               .upward = up / 0.6};
     const double depth = kNear + (kFar - kNear) * share(random);
     const glm::dvec3 x = eye + depth * (forward + 0.8 * anywhere(random) * right + 0.6 * anywhere(random) * up);
-    // Reference: a walk along the ray, which ends where it leaves the picture or the range of depths.
+    // Reference: walk along the ray to where it leaves the picture or the range of depths.
     double leaves = kBeyond;
     glm::dvec2 place(0);
     std::size_t through = 0;
@@ -271,7 +271,7 @@ TEST(MapFits, RaysLeaveAFrustumThroughTheFaceThatSaysSo) {
 }
 
 /// A shadow's edge at x = 0.3371 on a face of 8 × 8 texels. The first cut moves it from 3/8 to 5/16, the second to
-/// 11/32, the third, to 22/64, not at all: queries see no change, and no square is cut again. Each cut is of the
+/// 11/32, and the third, to 22/64, not at all: queries see no change, and no square is cut again. Each cut divides the
 /// squares that hold the edge.
 class QueriedTiles : public testing::Test {
  protected:
@@ -306,7 +306,7 @@ class QueriedTiles : public testing::Test {
 TEST_F(QueriedTiles, CutsWhileACutChangesThePicture) {
   const maps::QueriedTiles all = query(64, 0);
   EXPECT_EQ(all.pictures, 4U);
-  EXPECT_EQ(all.faces.size(), 22U);  // 1, 4, 2 + 8, 6 + 16
+  EXPECT_EQ(all.faces.size(), 22U);  // after the cuts: 1, 4, 2 + 8, 6 + 16
   for (const maps::FittedFace& face : all.faces) {
     const double across = face.direction({1, 0}).x - face.direction({0, 0}).x, left = face.direction({0, 0}).x;
     const bool holds_edge = left < 0.3371 && left + across > 0.3371;
@@ -316,7 +316,7 @@ TEST_F(QueriedTiles, CutsWhileACutChangesThePicture) {
 
 TEST_F(QueriedTiles, StopsAtItsLimits) {
   EXPECT_EQ(query(12, 0).faces.size(), 10U);
-  EXPECT_EQ(query(16, 0).faces.size(), 16U);  // two of the four squares that are due
+  EXPECT_EQ(query(16, 0).faces.size(), 16U);  // two of the four squares that should be cut
   // The first cut changes a sixteenth of the pixels, half of them in each of two squares.
   EXPECT_EQ(query(64, 256 * 256 / 32).faces.size(), 4U);
   EXPECT_EQ(query(64, 256 * 256 / 32 - 1).faces.size(), 10U);

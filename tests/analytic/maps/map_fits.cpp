@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps that are fitted to what a camera sees: the aliasing error, and every fit's shadows texel by texel.
+// Tests maps that are fitted to a camera's view: the aliasing error, and every fit's shadows texel by texel.
 // map_fit_forms.cpp holds the closed forms.
 
 #include "maps/host/aliasing.hpp"
@@ -25,7 +25,7 @@ class FittedMaps : public MapsTest {
   struct Plate {
     glm::dvec3 middle, u, v;
   };
-  /// A long floor, plates above it, a camera near its end, a light high up.
+  /// Plates of a scene with a long floor, a camera near its end, and a light high up.
   static std::vector<Plate> plates() {
     std::vector<Plate> plates;
     int k = 0;
@@ -61,8 +61,8 @@ class FittedMaps : public MapsTest {
   }
 };
 
-// A texel says what its centre sees: for every fit, every texel's answer on the floor is that of the plates in the
-// direction of its centre, except where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
+// A texel stores what its centre sees: for every fit, V on the floor must be that of the plates in the direction of the
+// texel's centre, except where an outline passes within the rasteriser's 1/256 texel (and rounding) of it.
 TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
@@ -85,7 +85,7 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
                                         {"cube", Fit::receivers}, {"paraboloid", Fit::receivers}};
   for (const auto& [name, fit] : fits) {
     for (const std::string body : {"visible", "frustum"}) {
-      const bool of_receivers = fit == Fit::receivers;  // whatever the camera sees
+      const bool of_receivers = fit == Fit::receivers;  // independent of what the camera sees
       if (of_receivers && body == "frustum") continue;
       const maps::ViewFit choice{.fit = fit,
                                  .body = body == "visible" ? maps::ViewBody::visible : maps::ViewBody::frustum};
@@ -144,8 +144,8 @@ TEST_F(FittedMaps, EveryTexelSaysWhatItsCentreSees) {
   }
 }
 
-// Eisemann et al. 2009, section 3.2: fitting spends no texels on what is not seen, slices and warps spend them near the
-// eye, tiles where pixels ask.
+// Eisemann et al. 2009, section 3.2: fitting spends no texels on what is not visible; slices and warps spend them near
+// the eye, tiles where pixels need them.
 TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const auto receivers = counters(stage, options("receivers")), view = counters(stage, options("view"));
@@ -156,21 +156,21 @@ TEST_F(FittedMaps, EveryFitAliasesLessThanTheOneBefore) {
     EXPECT_LT(storage(found), 0.5 * storage(view)) << fit;
     EXPECT_LT(found.at("aliasingWorstThousandths"), view.at("aliasingWorstThousandths")) << fit;
   }
-  // Slices by the logarithm of depth beat equal ones, and a warp in each beats both.
+  // Slices in the logarithm of depth are better than equal ones, and with a warp in each they are better still.
   const auto slices = counters(stage, options("cascades")),
              equal = counters(stage, options("cascades", {{"split", "uniform"}})),
              warped = counters(stage, options("lispsm", {{"cascades", "4"}}));
   EXPECT_LT(storage(slices), storage(equal));
   EXPECT_LT(storage(warped), storage(slices));
-  // Tiles of a quarter of the width, sixteen of them: as many texels as one map has.
+  // Sixteen tiles of a quarter of the width have as many texels as one map.
   const visibility::MethodOptions small{{"size", "64"}};
   const auto tiles = counters(stage, options("tiles", small));
   EXPECT_LE(tiles.at("mapFaces"), 16U);
   EXPECT_LT(tiles.at("undersampledPixels"), counters(stage, options("view")).at("undersampledPixels"));
 }
 
-// Eisemann et al. 2009, equation 3.2, its factors one by one, where eye and light are in the plane x = 0 and so is the
-// texel's side.
+// Eisemann et al. 2009, equation 3.2, factor by factor, for pixels where eye, light and the texel's side are in the
+// plane x = 0.
 TEST_F(FittedMaps, TheAliasingErrorIsEquation32) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const maps::LightBasis basis = maps::light_basis(stage.light, stage.floats);
@@ -179,19 +179,19 @@ TEST_F(FittedMaps, TheAliasingErrorIsEquation32) {
   const maps::FittedFace face = maps::faces_of(fitted.views.front()).front();
   const visibility::PinholeCamera& camera = stage.samples.camera;
   const auto& side = fitted.views.front().side[0];
-  // The light's axis along world z.
+  // The light's axis that is along world z.
   const int along = std::abs(basis.u.z) > 0.5 ? 0 : 1;
   std::size_t checked = 0;
   for (std::uint32_t y = 0; y < 72; ++y) {
     const std::size_t pixel = std::size_t{y} * 96 + 47;  // next to the middle column
     if (stage.samples.triangle[pixel] < 0 || stage.samples.triangle[pixel] > 1) continue;
     const glm::dvec3 p(stage.samples.p[pixel]), to_eye = camera.eye - p, to_light = basis.center - p;
-    const double resolution = 72.0 / kSize;  // pixels over texels a side
-    const double parametrisation = 1;        // dG/dt of an even map
+    const double resolution = 72.0 / kSize;  // pixels per side over texels per side
+    const double parametrisation = 1;        // dG/dt of a uniform map
     // Widths of both image planes over their distances: W_l n_e / (W_e n_l).
     const double light_width = static_cast<double>(side.upper[along] - side.lower[along]);
     const double views = light_width / (2 * camera.tan_half_fov);
-    // Distances along the axes, as "d_e corresponds to z" has it, and the beams' angles to them.
+    // Distances along the axes (the paper: "d_e corresponds to z"), and the beams' angles to the axes.
     const double light_depth = -glm::dot(basis.n, to_light), eye_depth = -glm::dot(camera.forward, to_eye);
     const double distances = light_depth / eye_depth;
     const double beams = light_depth / glm::length(to_light) / (eye_depth / glm::length(to_eye));
@@ -207,7 +207,7 @@ TEST_F(FittedMaps, TheAliasingErrorIsEquation32) {
   EXPECT_GT(checked, 30U);
 }
 
-/// A floor, a ball, a wall that reaches beyond the light: what the camera sees needs a hemicube.
+/// A floor, a ball, and a wall that reaches above the light: what the camera sees needs a hemicube.
 scenes::Scene ball_and_wall(bool two_sided) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -219,8 +219,8 @@ scenes::Scene ball_and_wall(bool two_sided) {
   return scene;
 }
 
-// All fits answer the same question: their answers differ from those of a window of receivers as much as these do from
-// finer ones.
+// All fits compute the same quantity: their results differ from those of maps fitted to all receivers about as much as
+// the latter differ from finer ones.
 TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
   for (const bool two_sided : {false, true}) {
     const Stage stage(ball_and_wall(two_sided), 40, 40, light_samples(1));
@@ -231,10 +231,10 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
     };
     std::vector<Case> cases{{maps::make_shadow_map, {{"depth", two_sided ? "dual" : "first"}}, 0.15}};
     if (!two_sided) {
-      // pcf's window is in texels, and texels differ: hard shadows blurred by more or less.
+      // pcf's window is measured in texels, whose sizes differ: hard shadows are blurred by different amounts.
       cases.push_back({maps::make_pcf, {{"window", "3"}}, 0.15});
       cases.push_back({maps::make_pcss, {{"blockerSamples", "16"}, {"filterSamples", "16"}}, 0.08});
-      // Windows on sideways faces and warped ones, against a hemicube's of all receivers.
+      // Windows on sideways and warped faces, against those of a hemicube for all receivers.
       cases.push_back({maps::make_vssm, {{"depth", "dual"}}, 0.08});
     }
     for (const Case& one : cases) {
@@ -265,9 +265,9 @@ TEST_F(FittedMaps, HemicubesFiltersAndLayersAgree) {
   }
 }
 
-// Every receiver is in a map, for every fit, in a room whose walls reach through the light's plane, with something
-// above the light. It sees what it sees in the maps of all receivers, except at outlines: no more pixels differ than in
-// maps of all receivers with texels four times as wide.
+// For every fit every receiver is in a map, in a room whose walls reach through the light's plane, with objects above
+// the light. Results equal those of maps of all receivers, except at outlines: no more pixels differ than with maps of
+// all receivers and texels four times as wide.
 TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});   // floor
@@ -309,8 +309,8 @@ TEST_F(FittedMaps, NoReceiverIsOutsideWhereTheLightsPlaneCutsWalls) {
   }
 }
 
-// Tiles that are cut while a cut changes the picture: like any tiles they show what maps of all receivers show, with
-// fewer pixels off than one map of the same size has; they do not depend on the rows that are asked for.
+// Tiles that are cut as long as a cut changes the picture: like any tiles they show the same as maps of all receivers,
+// with fewer wrong pixels than one map of the same size; they do not depend on how many rows are evaluated at once.
 TEST_F(FittedMaps, QueriedTilesAreCutWhereShadowsEnd) {
   const Stage stage(floor_and_plates(), 96, 72, light_samples(1));
   const Masks right = run(maps::make_shadow_map, stage, options("view", {{"size", "4096"}}));
@@ -341,7 +341,7 @@ TEST_F(FittedMaps, WhatNoFitCanDoIsRefused) {
   EXPECT_THROW(maps::make_shadow_map(device(), {{"projection", "paraboloid"}, {"test", "id"}}), UsageError);
 }
 
-// The picture of m: 1/m where it is more than 1.
+// aliasing=show draws 1/m where the aliasing error m exceeds 1.
 TEST_F(FittedMaps, TheErrorsPictureIsItsInverse) {
   const Stage stage(floor_and_plates(), 48, 36, light_samples(1));
   const auto method = maps::make_vssm(device(), {{"fit", "view"}, {"size", "64"}, {"aliasing", "show"}});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Methods of maps/ by the words of the command line: "bitmask:occluder=quad:layers=2".
+// Methods of maps/ written as on the command line: "bitmask:occluder=quad:layers=2".
 
 #include "maps/filters/methods.hpp"
 #include "tests/analytic/maps/fixture.hpp"
@@ -26,7 +26,7 @@ struct MapVariant {
       options[field.substr(0, equals)] = field.substr(equals + 1);
     }
   }
-  /// Returns this variant with more options, for those that it leaves open.
+  /// Returns this variant with these values for options that it does not set itself.
   [[nodiscard]] MapVariant with(const visibility::MethodOptions& more) const {
     MapVariant variant = *this;
     variant.options.insert(more.begin(), more.end());

@@ -14,7 +14,7 @@ using visibility::MethodOptions;
 
 class MapsMethod : public MapsTest {
  protected:
-  /// Makes methods with small maps, unless the test says how large: the tests' questions do not depend on the size.
+  /// Makes methods with small maps, unless the test gives a size: results of these tests do not depend on it.
   static Factory small(const Factory& make) {
     return [make](const render::Device& device, MethodOptions options) {
       options.try_emplace("size", "64");
@@ -74,7 +74,7 @@ TEST_F(MapsMethod, OptionsThatCannotBeMeantAreRefused) {
 }
 
 TEST_F(MapsMethod, MapsThatFitIntoNoBufferAreRefusedWithTheSizeThatDoes) {
-  // Largest number of faces that fits, and one more: on every device, however large its buffers are.
+  // The largest number of faces that fits, and one more; this holds on every device, however large its buffers are.
   constexpr std::uint32_t kSize = 1024;
   const auto most = static_cast<std::uint32_t>(maps::faces_per_buffer(device(), kSize));
   EXPECT_NO_THROW(maps::check_faces_fit(device(), kSize, most));
@@ -156,15 +156,15 @@ TEST_F(MapsMethod, DiskEllipseAndPolygonShapesAreDone) {
 TEST_F(MapsMethod, TheBodyOfTheLightItselfDoesNotShadeAndIsLit) {
   scenes::Scene bare = parallel_square();
   scenes::Scene with_body = bare;
-  add_quad(with_body, {0, 4.99, 0}, {1, 0, 0}, {0, 0, 1}).emits = 0;  // just below the light: hides all of it otherwise
+  add_quad(with_body, {0, 4.99, 0}, {1, 0, 0}, {0, 0, 1}).emits = 0;  // just below the light, which it would hide
   add_quad(with_body, {1.5, 0.5, 1}, {0.2, 0, 0}, {0, 0.3, 0.1}).emits = 0;
-  with_body.soup.positions.emplace_back(0, -4.99, 0);  // keeps the bounding box's centre, and with it all floats
+  with_body.soup.positions.emplace_back(0, -4.99, 0);  // keeps the bounding box's centre, and so all floats, the same
   bare.soup.positions.emplace_back(0, -4.99, 0);
   bare.soup.positions.emplace_back(0, 4.99, 0);
   const Stage without(bare, 48, 48, light_samples(16)), with(with_body, 48, 48, light_samples(16));
   ASSERT_EQ(without.floats.origin, with.floats.origin);
   for (const Factory& factory : all_) {
-    // A body in front of a hard shadow's border hides it from a flood on the screen.
+    // A body in front of a hard shadow's border hides the border from arvo's flood on the screen.
     if (factory(device(), {})->description().name == "arvo") continue;
     const Masks a = run(factory, without), b = run(factory, with);
     std::size_t bodies = 0;
@@ -189,7 +189,7 @@ TEST_F(MapsMethod, WhatCastsNoShadowShadesNothingAndWhatReceivesNoneIsLit) {
   scene.objects[1].casts_shadow = true;
   const Stage no_receiver(scene, 32, 32, light_samples(5));
   for (const Factory& factory : all_) {
-    // Splats of forward-map end where the floor does.
+    // Splats of forward-map end at the floor's border.
     if (factory(device(), {})->description().name == "forward-map") continue;
     for (const Stage* stage : {&no_caster, &no_receiver}) {
       const Masks result = run(factory, *stage);
@@ -206,7 +206,7 @@ TEST_F(MapsMethod, WhatCastsNoShadowShadesNothingAndWhatReceivesNoneIsLit) {
 TEST_F(MapsMethod, AnOccluderThatCrossesTheLightsPlaneIsCutNotLost) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3});
-  // A tall upright wall from the floor to far above the light: it parts the floor's right side from the light.
+  // A tall upright wall from the floor to far above the light: it separates the floor's right side from the light.
   add_quad(scene, {1, 10, 0}, {0, 10, 0}, {0, 0, 6});
   scene.lights.push_back(ceiling_light(2, 0.5));
   scene.cameras.push_back(camera({-1, 4, 6}, {0.5, 0, 0}, 50));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// vssm: against its twin in double, and against the closed forms of Chebyshev's bound.
+// Tests vssm against its twin in double, and against closed forms of Chebyshev's bound.
 
 #include "maps/filters/methods.hpp"
 
@@ -15,7 +15,7 @@ TEST_F(Vssm, IsItsTwin) {
       scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}, scenes::Disk{{0.2, 4, 0}, {0, -1, 0}, 0.5},
       scenes::Polygon{{{-0.5, 4, -0.5}, {0.6, 4, -0.4}, {0.1, 4, 0.6}}},
       scenes::Rectangle{
-          {0, 4, 0}, {2.5, 0, 0}, {0, 0, 3}}};  // the near plane is its radius away, not the nearest caster
+          {0, 4, 0}, {2.5, 0, 0}, {0, 0, 3}}};  // the near plane is the light's radius away, not at the nearest caster
   const std::vector<VssmSettings> all{
       {.moments = "vsm", .subdivision = "uniform"},
       {.moments = "vsm"},
@@ -35,7 +35,7 @@ TEST_F(Vssm, IsItsTwin) {
     const CentreMaps maps(device(), stage, kMapSize, beside(stage));
     ASSERT_EQ(maps.fitted.faces, 1U);
     for (const VssmSettings& settings : all) {
-      if (k == 3 && settings.moments != "vsm") continue;  // its windows are the whole map, and twins are slow
+      if (k == 3 && settings.moments != "vsm") continue;  // this light's windows are the whole map: slow twins
       const Masks found = run(maps::make_vssm, stage, options_of(settings));
       const VssmTwin twin(maps, stage, settings);
       std::size_t receivers = 0, off = 0, soft = 0;
@@ -46,8 +46,8 @@ TEST_F(Vssm, IsItsTwin) {
         const double v = twin(i).v, is = found.visibility[i];
         soft += v > 0.02 && v < 0.98 ? 1 : 0;
         sum += std::abs(v - is);
-        // Where a mean of the search is at the receiver's own height, rounding decides whether anything blocks: V may
-        // then be anything between the filter's answer and 1. A series' functions have 12 digits.
+        // Where a mean depth of the search equals the receiver's, rounding decides whether anything blocks: V may then
+        // be anything between the filter's result and 1. A series' functions have 12 digits.
         off += std::abs(v - is) > 2e-4 ? 1 : 0;
       }
       fmt::print("{} {} of light {}: {} receivers, {} in penumbra, {} off, mean {:.2e}\n", settings.moments,
@@ -58,7 +58,7 @@ TEST_F(Vssm, IsItsTwin) {
   }
 }
 
-// Receivers in the air, at all heights: whichever layer they are in.
+// Receivers in the air at all heights, so that every layer is used.
 TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}), 24, 24, light_samples(1),
                     grid_samples(24, {-0.2, 0.6, 0.1}, {0.7, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
@@ -78,8 +78,8 @@ TEST_F(Vssm, LayersAreTheirTwinsAtAnyHeight) {
   }
 }
 
-// Where most of a window is farther than the receiver, the mean of exponentials says little, and texels are compared
-// with the receiver one by one: every few texels of a window wider than 16, and those inside the map alone.
+// Where most of a window is farther than the receiver, the mean of exponentials is inaccurate, and texels are compared
+// with the receiver one by one: in a window wider than 16 only every few texels, and only those inside the map.
 TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.9, 0, 0}, {0, 0, 0.6}}), 24, 24, light_samples(1),
                     grid_samples(24, {0, 0.6, 0}, {1.9, 0, 0}, {0, 0.58, 0}, {0, 1, 0}));
@@ -100,8 +100,8 @@ TEST_F(Vssm, TexelByTexelItIsItsTwinAtAnyHeight) {
   }
 }
 
-// Eisemann et al. 2009, section 4.2.1: one flat blocker and one flat receiver, both parallel to the light, are two
-// depths, and of those the bound is the share itself.
+// Eisemann et al. 2009, section 4.2.1: one flat blocker and one flat receiver, both parallel to the light, give two
+// depths, for which the bound is the exact share.
 TEST_F(Vssm, OfTwoDepthsTheBoundIsTheShare) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   const VssmSettings settings{.moments = "vsm", .bias = 0};
@@ -110,10 +110,11 @@ TEST_F(Vssm, OfTwoDepthsTheBoundIsTheShare) {
   const VssmTwin twin(maps, stage, settings);
   std::size_t soft = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-    // The search's window is the filter's, since the near plane is the blocker's: the share is of the texels under it.
+    // The search's window equals the filter's, because the near plane is at the blocker: the share is that of the
+    // texels in it.
     const VssmTwin::Answer answer = twin(i);
     const double share = answer.no_blockers ? 1 : answer.pcf;
-    // A share f lit gives f (1 − f) Δ² + ε over (1 − f) Δ² + ε, Δ half of the range of heights and ε the least
+    // A lit share f gives (f (1 − f) Δ² + ε) / ((1 − f) Δ² + ε), with Δ half of the range of heights and ε the least
     // variance, 2⁻²²: off by less than 2⁻²⁰ / (1 − f).
     EXPECT_NEAR(found.visibility[i], share, share < 1 ? 0x1p-20 / (1 - share) + 1e-5 : 1e-6) << i;
     soft += share > 0 && share < 1 ? 1 : 0;
@@ -142,9 +143,9 @@ TEST_F(Vssm, TheBoundIsNeverDarkerThanCountingTheSameTexels) {
   }
 }
 
-// Eisemann et al. 2009, figure 4.5 as a closed form. Of a sheet at z1 over one at z2 that covers all, seen from z3,
-// with Δ = z2 − z1 and D = z3 − z2: the bound is q (1 − q) Δ² / (q (1 − q) Δ² + (D + q Δ)²) where the upper sheet fills
-// q of the window, largest at q = D / (Δ + 2 D), where it is 1 / (1 + 2 D / Δ)².
+// Eisemann et al. 2009, figure 4.5 as a closed form. A sheet at z1 is over one at z2 that covers everything, seen from
+// z3; Δ = z2 − z1 and D = z3 − z2. Where the upper sheet fills q of the window the bound is q (1 − q) Δ² / (q (1 − q)
+// Δ² + (D + q Δ)²). Its maximum, at q = D / (Δ + 2 D), is 1 / (1 + 2 D / Δ)².
 TEST_F(Vssm, TheWorstLeakUnderTwoSheetsIsTheClosedForm) {
   for (const auto& [upper, lower] : {std::pair(2.5, 1.25), std::pair(2.5, 2.5 / 3), std::pair(2.0, 1.5)}) {
     const double delta = upper - lower, below = lower, worst = 1 / std::pow(1 + 2 * below / delta, 2);
@@ -155,8 +156,8 @@ TEST_F(Vssm, TheWorstLeakUnderTwoSheetsIsTheClosedForm) {
       const double most = *std::ranges::max_element(found.visibility);
       fmt::print("sheets at {} and {}: leak {:.5f}, closed form {:.5f}{}\n", upper, lower, most, worst,
                  repaired ? ", cut" : "");
-      // Everything is umbra. 48 columns over a window's width: q is met within 1/20, and V is flat there: with
-      // V'' ≈ −2 worst (1 + 2 D / Δ)² … below, 1/20 off the best q costs less than 2 % of it.
+      // Everything is umbra. With 48 columns over a window's width the best q is met within 1/20, and V is flat there:
+      // by V'' ≈ −2 worst (1 + 2 D / Δ)², 1/20 off the best q costs less than 2 % of the maximum.
       if (repaired) {
         EXPECT_EQ(most, 0) << upper << " over " << lower;
       } else {

@@ -6,8 +6,8 @@
 
 namespace penumbra::tests {
 
-/// Floor at height 0 (object 0), occluder [−1, 1]² at height 2 (object 1), light of half-size 1 at height 5.
-/// `reach` stretches the occluder toward −x: with a large one it is a half-plane whose edge is at x = 1.
+/// The floor is at height 0 (object 0), the occluder [−1, 1]² at height 2 (object 1), the light of half-size 1 at 5.
+/// `reach` extends the occluder toward −x: with a large value it is a half-plane whose edge is at x = 1.
 inline scenes::Scene parallel_square(double reach = 1, double half_width = 1) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
@@ -20,7 +20,7 @@ inline scenes::Scene parallel_square(double reach = 1, double half_width = 1) {
 class ParallelSquare {
  public:
   explicit ParallelSquare(const Stage& stage) : stage_(&stage) {
-    lower_ = upper_ = stage.floats.positions[6];  // the occluder's corners follow the floor's six
+    lower_ = upper_ = stage.floats.positions[6];  // the floor has the first six positions, the occluder the next six
     for (std::size_t i = 7; i < 12; ++i) {
       lower_ = glm::min(lower_, glm::dvec3(stage.floats.positions[i]));
       upper_ = glm::max(upper_, glm::dvec3(stage.floats.positions[i]));
@@ -41,7 +41,7 @@ class ParallelSquare {
     for (std::size_t j = 0; j < stage_->light.points.size(); ++j) count += visible(pixel, j) ? 1 : 0;
     return static_cast<double>(count) / static_cast<double>(stage_->light.points.size());
   }
-  /// The visible share of the light itself: the occluder's rectangle, seen from p, cut with the light's.
+  /// Returns the visible share of the light itself: 1 − the share covered by the occluder's rectangle as seen from p.
   [[nodiscard]] double area(std::size_t pixel) const {
     const glm::dvec3 p = stage_->samples.p[pixel], c = stage_->light.center;
     const double to_light = (c.y - p.y) / (lower_.y - p.y);

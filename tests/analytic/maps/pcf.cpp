@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// pcf: a fixed window of texels, whose widths, levels and self-shadowing are known in closed form.
+// Tests pcf with a fixed window of texels: its widths, levels and self-shadowing are known in closed form.
 
 #include "maps/filters/methods.hpp"
 
@@ -29,8 +29,8 @@ scenes::Scene under_a_board(double height, double edge, double half_light) {
   return scene;
 }
 
-// Eisemann et al. 2009, section 4.1.2: the window knows neither occluder nor light. V rises over n texels of t z each
-// on the floor, linearly up to one texel's step, around the hard shadow's edge.
+// Eisemann et al. 2009, section 4.1.2: the window depends neither on the occluder nor on the light. Around the hard
+// shadow's edge V rises over n texels, each t z wide on the floor, linearly up to steps of one texel.
 TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
   constexpr std::uint32_t kSamples = 2048, kSize = 256;
   for (const std::uint32_t n : {7U, 8U, 21U}) {
@@ -55,7 +55,7 @@ TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
         const Masks found = run(maps::make_pcf, stage, window(n, kSize));
         if (first.empty()) first = found.visibility;
         EXPECT_EQ(found.visibility, first) << "light " << half_light;
-        // Texels of the window of ±1 in x/z, a little wider for what is beside it, on the floor at distance 2.
+        // A texel's width on the floor at distance 2; the window is ±1 in x/z, plus the filter's reach beside it.
         const int reach = n / 2;
         const CentreMaps maps(device(), stage, kSize, glm::dvec2(8.0 * reach / kSize));
         const auto& side = maps.fitted.views.front().side[0];
@@ -65,20 +65,20 @@ TEST_F(Pcf, ThePenumbraIsTheWindowWhateverTheBlockersHeightAndTheLightsSize) {
           while (i<kSamples&& static_cast<double>(found.visibility[i])> share) ++i;
           return -1 + 2.0 * static_cast<double>(i) / kSamples;
         };
-        // Steps of 1/n stand a texel apart: a level is crossed within half a texel of where a ramp would cross it, and
-        // a sample's spacing later.
+        // Steps of 1/n are a texel apart: a level is reached within half a texel of where a ramp would reach it, and up
+        // to a sample's spacing later.
         const double spacing = 2.0 / kSamples;
         EXPECT_NEAR(place_of(0.1) - place_of(0.9), 0.8 * n * texel, texel + spacing) << n << " at z " << z;
-        // A row of texels begins anywhere, so the edge is where the rasteriser put it: half a texel either way; an even
-        // window is centred half a texel off.
+        // Rows of texels may begin anywhere, so the edge is where the rasteriser puts it, up to half a texel off; an
+        // even window's centre is half a texel off.
         EXPECT_NEAR(place_of(0.5), 0.1, texel + spacing) << n << " at z " << z;
       }
     }
   }
 }
 
-// Eisemann et al. 2009, figure 4.3: with the receiver's own depth for every texel, half a tilted plane shades the other
-// half.
+// Eisemann et al. 2009, figure 4.3: if all texels are compared with the receiver's own depth, one half of a tilted
+// window shades the other.
 TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
   constexpr std::uint32_t kSide = 40, kSize = 256;
   for (const double tilt : {30.0, 60.0}) {
@@ -88,7 +88,7 @@ TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
     add_quad(scene, {0, 0, 0}, along, {0, 0, -1});
     scene.lights.push_back(ceiling_light(5, 0.5));
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
-    // Away from the border by more than the widest window.
+    // The samples are away from the border by more than the widest window.
     const Stage stage(scene, kSide, kSide, light_samples(1),
                       grid_samples(kSide, {0, 0, 0}, 0.8 * along, {0, 0, 0.8}, up));
     for (const std::uint32_t n : {1U, 3U, 7U, 15U}) {
@@ -103,8 +103,9 @@ TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         EXPECT_EQ(followed.visibility[i], 1.0F) << "pixel " << i;
         const glm::dvec3 d = maps.basis.local(glm::dvec3(stage.samples.p[i]));
-        // Depth changes along one axis alone. Its own column is nearer than the receiver if its centre is on the side
-        // where the plane rises toward the light: then (n − 1) / 2 columns are lit of n, else (n + 1) / 2.
+        // Depth changes along one axis only. The receiver's own column of texels is nearer to the light than the
+        // receiver if its centre is on the side where the plane rises toward the light: then (n − 1) / 2 of n columns
+        // are lit, otherwise (n + 1) / 2.
         const int axis = std::abs(maps.basis.u.x) > 0.5 ? 0 : 1;
         const double texel = static_cast<double>(side.upper[axis] - side.lower[axis]) / kSize;
         const double at = (d[axis] / d.z - static_cast<double>(side.lower[axis])) / texel, part = at - std::floor(at);
@@ -120,7 +121,7 @@ TEST_F(Pcf, ATiltedReceiverShadesHalfOfItselfUnlessItsPlaneIsFollowed) {
   }
 }
 
-/// A floor, a sphere, a wall up to `wall`, which asks for a hemicube where it reaches the light.
+/// A floor, a sphere and a wall of height `wall`; where the wall reaches the light, maps are hemicubes.
 scenes::Scene sphere_and_wall(double wall, bool two_sided) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -155,7 +156,7 @@ TEST_F(Pcf, LevelsAreWholeTexelsOfTheWindow) {
   }
 }
 
-// A window in a hemicube goes on on the next face: the seams do not show on a floor that nothing shades.
+// In a hemicube a window continues on the next face: no seams show on a floor without shadows.
 TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   scenes::Scene scene = sphere_and_wall(5, false);
   scene.objects[1].casts_shadow = false;
@@ -165,7 +166,7 @@ TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
     const std::int32_t triangle = stage.samples.triangle[i];
     if (triangle < 0 || stage.floats.object[static_cast<std::size_t>(triangle)] != 0) continue;
-    // The wall stands nearer than the continued floor's plane within the window of the wall's foot.
+    // At the wall's foot, windows contain the wall, which is nearer to the light than the floor's plane continued.
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
     if (p.x > 2) continue;
     ++floor;
@@ -174,7 +175,7 @@ TEST_F(Pcf, WindowsGoOnAcrossTheFacesOfAHemicube) {
   EXPECT_GT(floor, 300U);
 }
 
-// V is a sum of weights, of all columns beyond the edge, where a board's straight edge runs along the texels.
+// V is the sum of the weights of all columns beyond the edge, if a board's straight edge runs along the texels.
 TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
   constexpr std::uint32_t kSamples = 512, kSize = 64;
   const auto line = [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
@@ -205,7 +206,7 @@ TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
       const auto column_of = [&](double x_over_z) {
         return ((forward ? x_over_z : -x_over_z) - static_cast<double>(side.lower[axis])) / texel;
       };
-      // The board covers columns whose centres are beyond its edge, at 0.05 over 1.
+      // The board covers columns whose centres are beyond its edge, at x = 0.05 and depth 1.
       const double edge = column_of(0.05);
       const auto dark = [&](double column) { return forward ? column + 0.5 > edge : column + 0.5 < edge; };
       std::size_t between = 0;
@@ -213,7 +214,7 @@ TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
         const glm::dvec3 d = maps.basis.local(glm::dvec3(stage.samples.p[i]));
         const double at = (d[axis] / d.z - static_cast<double>(side.lower[axis])) / texel;
         const double to_border = std::abs(at - std::round(at)), to_half = std::abs(at - std::floor(at) - 0.5);
-        if (std::min(to_border, to_half) < 1e-3) continue;  // another column by rounding
+        if (std::min(to_border, to_half) < 1e-3) continue;  // rounding may choose another column
         double lit = 0, all = 0;
         if (bilinear) {
           const double first = at - 0.5 * n, last = at + 0.5 * n;
@@ -240,7 +241,7 @@ TEST_F(Pcf, WeightsAreThoseOfTheirNames) {
   }
 }
 
-// Uralsky 2005: with stages only what the outermost taps disagree about is asked for more; turned patterns have the
+// Uralsky 2005: with stages, more taps are read only where the outermost taps disagree; rotated patterns have the
 // window's mean.
 TEST_F(Pcf, SpreadTapsHaveTheWindowsMean) {
   const Stage stage(sphere_and_wall(1, false), 64, 64, light_samples(1));
@@ -262,7 +263,7 @@ TEST_F(Pcf, SpreadTapsHaveTheWindowsMean) {
   std::size_t changed = 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (staged[i] == many[i]) continue;
-    ++changed;  // the outermost agreed, others did not
+    ++changed;  // the outermost taps agreed, others did not
     EXPECT_TRUE(staged[i] == 0.0F || staged[i] == 1.0F);
   }
   EXPECT_LT(changed, all.size() / 20);
@@ -270,8 +271,8 @@ TEST_F(Pcf, SpreadTapsHaveTheWindowsMean) {
   EXPECT_THROW(maps::make_pcf(device(), {{"taps", "4"}, {"weights", "bilinear"}}), UsageError);
 }
 
-// A texel's centre is up to half a texel from a receiver along both axes: a polygon offset of factor 1 is what its own
-// depth changes, and a tilted plane no longer shades itself. Where there is a caster at half the height, it still
+// A texel's centre is up to half a texel from a receiver along both axes: a polygon offset of factor 1 is the change of
+// the plane's depth over a texel, so that a tilted plane no longer shades itself. A caster at half the height still
 // shades.
 TEST_F(Pcf, APolygonOffsetKeepsATiltedPlaneLit) {
   constexpr std::uint32_t kSide = 40;
@@ -292,7 +293,7 @@ TEST_F(Pcf, APolygonOffsetKeepsATiltedPlaneLit) {
         return sum / static_cast<double>(masks.visibility.size());
       };
       EXPECT_LT(mean(run(make, stage, options)), 0.7) << "units alone";
-      // pcf's window of 7 asks texels three and a half away.
+      // pcf's window of 7 reads texels three and a half away.
       options["offsetFactor"] = "4.5";
       EXPECT_EQ(mean(run(make, stage, options)), 1.0) << tilt;
       options["rasteriser"] = "opengl";
@@ -304,7 +305,7 @@ TEST_F(Pcf, APolygonOffsetKeepsATiltedPlaneLit) {
     least["depth"] = "dual";
     EXPECT_THROW(maps::make_shadow_map(device(), least), UsageError);
   }
-  // The tolerance forgives no more than that: a board 0.3 over a floor shades it.
+  // The offset forgives no more than that: a board 0.3 above a floor still shades it.
   const auto grid = grid_samples(16, {0.6, 0, 0}, {0.3, 0, 0}, {0, 0, 0.3}, {0, 1, 0});
   const Stage stage(under_a_board(0.3, 0.05, 0.1), 16, 16, light_samples(1), grid);
   const Masks found =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forms of pcf that ask less than every texel, or something else: extreme depths of a window (Pagot et al. 2004), its
-// mean depth (Luft and Deussen 2006), objects (Brabec and Seidel 2002); and shadow-map's objects.
+// Tests forms of pcf that use less than every texel, or something else: extreme depths of a window (Pagot et al. 2004),
+// its mean depth (Luft and Deussen 2006), object numbers (Brabec and Seidel 2002); and shadow-map's object test.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 class PcfForms : public MapsTest {};
 
-/// Depths in a window of the map around a receiver on a level floor, whose plane is equally deep at every texel.
+/// Depths in a window of the map around a receiver on a level floor, whose plane has the same depth at every texel.
 struct Window {
   std::vector<double> depths;
   double own, forgiven;
@@ -68,7 +68,7 @@ TEST_F(PcfForms, ExtremesAndMeansAreThoseOfTheWindow) {
     const auto lit = [&](double depth) { return depth < window.own - window.forgiven ? 0 : 1; };
     const double far = static_cast<double>(drawn.fitted.views.front().far), half = 0.5 * (least + greatest);
     const double middle = *std::ranges::min_element(window.depths, {}, [&](double depth) {
-      return std::abs(depth - half) + (depth > half ? far * 0x1p-20 : 0.0);  // of two depths the lesser
+      return std::abs(depth - half) + (depth > half ? far * 0x1p-20 : 0.0);  // a tie goes to the lesser depth
     });
     const double of_two = (lit(least) + lit(greatest)) / 2.0,
                  of_three = (lit(least) + lit(greatest) + lit(middle)) / 3.0;
@@ -76,7 +76,7 @@ TEST_F(PcfForms, ExtremesAndMeansAreThoseOfTheWindow) {
     for (const double depth : window.depths) sum += std::min(depth, window.own);
     const double behind = (window.own - sum / kCount / kCount - window.forgiven) / (0.25 * window.own),
                  x = std::clamp(behind, 0.0, 1.0), smooth = 1 - x * x * (3 - 2 * x);
-    // A place within rounding of a texel's border may have the window beside.
+    // A place within rounding of a texel's border may get the neighbouring window.
     const bool same = std::abs(static_cast<double>(two.visibility[i]) - of_two) < 1e-6 &&
                       std::abs(static_cast<double>(three.visibility[i]) - of_three) < 1e-6 &&
                       std::abs(static_cast<double>(mean.visibility[i]) - smooth) < 1e-4;
@@ -89,8 +89,8 @@ TEST_F(PcfForms, ExtremesAndMeansAreThoseOfTheWindow) {
   for (const int count : levels) EXPECT_GT(count, 20);
 }
 
-/// No object shades itself: without any bias, and compared by the receiver's own depth, a ball is lit where the light's
-/// centre is above its horizon, and its shadow on the floor is there.
+/// No object shades itself: without any bias, and compared with the receiver's own depth, a ball is lit where the
+/// light's centre is above its horizon, and it still casts its shadow on the floor.
 TEST_F(PcfForms, ObjectsDoNotShadeThemselves) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
@@ -108,7 +108,7 @@ TEST_F(PcfForms, ObjectsDoNotShadeThemselves) {
     if (stage.samples.triangle[i] < 0) continue;
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin, to = glm::dvec3(0, 5, 0) - p;
     if (stage.floats.object[static_cast<std::size_t>(stage.samples.triangle[i])] == 0) {
-      // The shadow's middle: of a ray that passes the ball's middle by less than half its radius.
+      // The middle of the shadow: places whose ray to the light passes the ball's middle within half its radius.
       const double t = glm::dot(glm::dvec3(0.1, 1, 0) - p, to) / glm::dot(to, to);
       if (glm::distance(p + t * to, glm::dvec3(0.1, 1, 0)) > 0.25) continue;
       ++shaded;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Predicts the answers of pcss under casters that are rectangles parallel to the light: its maps are known in closed
-// form, so every tap is, except those within half a texel of an outline. V lies between the answers that those leave
-// open.
+// Predicts pcss's V under casters that are rectangles parallel to the light. The maps are then known in closed form,
+// and so is every tap, except those within half a texel of an outline. V lies between the results that these leave
+// possible.
 
 #include "maps/host/light_basis.hpp"
 #include "maps/products/light_shape.hpp"
@@ -16,7 +16,7 @@
 
 namespace penumbra::tests {
 
-/// Caster in the light's frame (centre 0, z the distance from its plane).
+/// A caster in the light's frame (the light's centre is 0, z the distance from its plane).
 struct ParallelCaster {
   double z = 0;
   glm::dvec2 lower{0}, upper{0};
@@ -35,7 +35,7 @@ struct Between {
 
 class PcssPrediction {
  public:
-  /// `casters`: the nearer before the farther.
+  /// `casters`: from the nearest to the farthest.
   PcssPrediction(const visibility::Light& light, std::vector<ParallelCaster> casters, const PcssTaps& taps)
       : casters_(std::move(casters)),
         taps_(taps),
@@ -56,7 +56,8 @@ class PcssPrediction {
     Between v{0, 0};
     for (std::size_t k = 0; k < filter_.size(); ++k) {
       const glm::dvec2 s(filter_[k]);
-      // The tap's position is linear in 1/z: it lies between those for the least and the largest mean height.
+      // The tap's position is linear in 1/z: it lies between the positions for the smallest and the largest mean
+      // height.
       const glm::dvec2 a = at + s * (1 / low - 1 / d.z), b = at + s * (1 / high - 1 / d.z);
       const Tap between = tap_between(glm::min(a, b), glm::max(a, b));
       if (!between.may_block) v.low += weights_[k];
@@ -67,8 +68,8 @@ class PcssPrediction {
   }
 
  private:
-  /// Returns the weights of the filter's taps, 1 together: equal, or a rectangle's texture at the light point, its
-  /// first row uppermost.
+  /// Returns the weights of the filter's taps, whose sum is 1: equal, or the rectangle's texture at the light points
+  /// (first row uppermost).
   [[nodiscard]] std::vector<double> weights_of(const visibility::Light& light) const {
     std::vector<double> weights(filter_.size(), 1.0);
     if (light.texture) {
@@ -89,11 +90,12 @@ class PcssPrediction {
     return weights;
   }
   struct Tap {
-    bool blocks = false, may_block = false;  ///< surely, perhaps
+    bool blocks = false, may_block = false;  ///< certainly, possibly
     double low = 0, high = 0;                ///< bounds of the height, if it blocks
   };
   [[nodiscard]] Tap tap(const glm::dvec2& at) const { return tap_between(at, at); }
-  /// Somewhere in this box of map coordinates, and up to half a texel beside it; corners are snapped to 1/256 texel.
+  /// A tap somewhere in this box of map coordinates, or up to half a texel outside it; corners are snapped to 1/256
+  /// texel.
   [[nodiscard]] Tap tap_between(const glm::dvec2& lower, const glm::dvec2& upper) const {
     const glm::dvec2 beside = (0.5 + 1.0 / 256) * taps_.texel;
     Tap result;
@@ -108,13 +110,13 @@ class PcssPrediction {
       const bool inside =
           glm::all(glm::greaterThan(lower - beside, from)) && glm::all(glm::lessThan(upper + beside, to));
       if (!inside) continue;
-      result.blocks = true;  // what is behind it is not seen
+      result.blocks = true;  // hides all casters behind it
       break;
     }
     return result;
   }
 
-  /// The mean height of blockers.
+  /// Bounds of the blockers' mean height.
   class Heights {
    public:
     void add(const Tap& tap) {
@@ -138,7 +140,7 @@ class PcssPrediction {
     }
 
    private:
-    /// Returns the least mean of `count` numbers of this sum and any of the others.
+    /// Returns the smallest mean of `count` numbers with this sum and any of the others.
     static double least_mean(double sum, std::size_t count, std::vector<double> others) {
       std::ranges::sort(others);
       for (const double other : others) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Scenes on which whatever holds of a method must hold: shipped ones, meshes with every defect, and soups on a small
+// Scenes for properties that every method must have: shipped ones, meshes with every defect, and soups on a small
 // lattice, where a camera, a light and triangles coincide.
 
 #include "mesh/shapes/broken_meshes.hpp"
@@ -99,7 +99,7 @@ inline const std::vector<Place>& few_places() {
   return all;
 }
 
-/// Everything that ships and is small enough, each defect in its own mesh, and many soups; one after the other.
+/// Visits, one after the other, all shipped scenes that are small enough, a mesh for each defect, and many soups.
 inline void each_place(const std::function<void(const Place&)>& see) {
   for (const char* file : {"self-shadow.json", "bunny.json", "contact.json", "fusion.json", "large-penumbra.json",
                            "parallel-square.json", "room.json", "thin.json", "broken.json"}) {

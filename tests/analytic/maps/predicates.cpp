@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what papers and algebra say of the image-based family on every scene, or on every scene of a class, where no
-// other file of this folder does. docs/predicates.md lists all claims, with their names and what is measured.
+// Tests statements of papers and of algebra about the image-based family, for every scene or for every scene of a
+// class, as far as no other file of this folder does. docs/predicates.md lists all of them, with their names (I15, E6
+// ...) and measurements.
 
 #include "maps/filters/methods.hpp"
 #include "tests/analytic/maps/predicates.hpp"
@@ -15,7 +16,8 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// One ball, whose map from the light's centre is the receivers' window: four specks at its corners.
+/// A ball, and four specks at the corners of the receivers' window, so that the ball's map from the light's centre has
+/// that window.
 scenes::Scene ball_and_specks() {
   scenes::Scene scene = bare_floor(0.5, 4);
   add_object(scene, "ball", sphere({0, 2, 0}, 1, 16)).receives_shadow = false;
@@ -27,15 +29,15 @@ scenes::Scene ball_and_specks() {
   return scene;
 }
 
-// I15: behind a convex body the second layer is the farthest surface, and two ways to sum its patches are one: what the
-// second pass of soft-shadow-map adds up, at a texel of its receivers, and the deepest layer of backproject-peel.
+// I15: behind a convex body the second layer is the farthest surface, and two ways to sum its patches agree: the second
+// pass of soft-shadow-map, at a texel of its receivers' map, and the deepest layer of backproject-peel.
 TEST_F(MapsPredicates, BehindAConvexBodyPeelingIsTheSecondPass) {
   const Stage stage(ball_and_specks(), 20, 20, light_samples(1),
                     [](const visibility::SceneFloats& floats, const visibility::PinholeCamera& /*camera*/) {
                       visibility::ViewSamples samples;
                       samples.width = samples.height = 20;
                       for (std::uint32_t i = 0; i < 400; ++i) {
-                        // Centres of texels 4, 7, ... of 66 over the floor, one of which is to spare on either side.
+                        // Centres of texels 4, 7, ... of the 66 over the floor, one of which is spare on either side.
                         const glm::dvec2 at = glm::dvec2(4 + 3 * (i % 20), 4 + 3 * (i / 20)) + 0.5 - 33.0;
                         samples.triangle.push_back(0);
                         samples.p.emplace_back(glm::dvec3(8 * at.x / 64, 0, 8 * at.y / 64) - floats.origin);
@@ -59,7 +61,7 @@ TEST_F(MapsPredicates, BehindAConvexBodyPeelingIsTheSecondPass) {
   std::size_t compared = 0;
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
     EXPECT_LE(contribution.visibility[i], deepest.visibility[i]);
-    if (!(two.visibility[i] < one.visibility[i])) continue;  // there V of the second pass is not the smaller one
+    if (!(two.visibility[i] < one.visibility[i])) continue;  // the second pass's V is not the smaller one here
     ++compared;
     off = std::max(off, static_cast<double>(std::abs(two.visibility[i] - deepest.visibility[i])));
     darker = std::max(darker, static_cast<double>(two.visibility[i] - contribution.visibility[i]));
@@ -67,8 +69,8 @@ TEST_F(MapsPredicates, BehindAConvexBodyPeelingIsTheSecondPass) {
   record("I15 select=deepest off by", off);
   record("I15 select=contribution darker by up to", darker);
   EXPECT_GT(compared, 40U);
-  // Borders on the light are rounded to 2^-20 of its sides here and to 2^-30 of its area there, those of 16 patches a
-  // side: V is off by 16 of them at most; floats of tangents by as much again.
+  // Borders on the light are rounded to 2^-20 of its sides in one method and to 2^-30 of its area in the other; 16
+  // patches a side have borders: V is off by at most 16 of these roundings, and by as much again for tangents in float.
   EXPECT_LT(off, 1e-4);
   EXPECT_GT(darker, 0.01) << "a nearer patch counts where the farther one misses the light";
 }
@@ -100,7 +102,7 @@ class ABoxOverAFloor : public MapsPredicates {
   }
 };
 
-// E6 (Atty et al. 2006, figure 19), of this box alone: under the light it is nearer to the truth than half a width
+// E6 (Atty et al. 2006, figure 19), for this box: under the light the result is nearer to the truth than half a width
 // aside.
 TEST_F(ABoxOverAFloor, UnderTheLightIsNearerToTheTruthThanAside) {
   EXPECT_LT(measured(0).one, measured(0.4).one);
@@ -111,9 +113,9 @@ TEST_F(ABoxOverAFloor, FartherAsideTooFull) {
   for (const double aside : {0.8, 1.5}) EXPECT_LT(under, measured(aside).one);
 }
 
-// A15: the map has the box's top alone, and there are no gaps to blame. Points of a light within the box's own
-// half-size see nothing of its sides, and next to nothing is missing; those of a light of half-size 1 do. What the top
-// leaves of that light and the box does not, integrated by hand: 0.033 of the pixels in shadow.
+// A15: the map has only the box's top, and no gaps to blame. Points of a light within the box's own half-size see
+// nothing of its sides, and next to nothing is missing; points of a light of half-size 1 do see them. The light that
+// the box hides and its top does not, integrated by hand, is 0.033 of the pixels in shadow.
 TEST_F(ABoxOverAFloor, SidesThatTheCentreDoesNotSeeHideALargeLight) {
   const Measured small = measured(0), large = measured(0, 1, "64");
   EXPECT_GT(small.bias_one, 0);
@@ -122,8 +124,8 @@ TEST_F(ABoxOverAFloor, SidesThatTheCentreDoesNotSeeHideALargeLight) {
   EXPECT_LT(large.bias_two, large.bias_one);
 }
 
-// E9 (Atty et al. 2006, section 5.1.2): over a tilted plane gaps and overlaps of summed patches cancel in part; a union
-// of the same patches has the gaps alone.
+// E9 (Atty et al. 2006, section 5.1.2): over a tilted plane gaps and overlaps of summed patches partly cancel; a union
+// of the same patches has only the gaps.
 TEST_F(MapsPredicates, OverATiltedPlaneSumsAreLessBiasedThanUnions) {
   const Stage stage = on_floor(oblique_quad(), 32, light_samples(1024));
   const Masks truth = exact(stage);
@@ -139,11 +141,11 @@ TEST_F(MapsPredicates, OverATiltedPlaneSumsAreLessBiasedThanUnions) {
   }
 }
 
-// S1' (Eisemann et al. 2009, figure 1.8): of nested shells one layer has the outermost; the rest of the shadow comes
-// layer by layer.
+// S1' (Eisemann et al. 2009, figure 1.8): for nested shells one layer holds the outermost shell; each further layer
+// adds to the shadow.
 TEST_F(MapsPredicates, LayersOfNestedShellsBringTheShadowBack) {
   scenes::Scene scene = bare_floor(1, 3);
-  // Caps that the light's centre sees one behind the other, the lowest the widest for the floor.
+  // Caps that the light's centre sees one behind the other; the lowest casts the widest shadow on the floor.
   for (int shell = 0; shell < 4; ++shell) {
     add_quad(scene, {0, 3.6 - 0.8 * shell, 0}, {0.35, 0, 0}, {0, 0, -0.35}).receives_shadow = false;
   }
@@ -160,7 +162,7 @@ TEST_F(MapsPredicates, LayersOfNestedShellsBringTheShadowBack) {
   }
 }
 
-/// Places along a line outward over a shadow's edge at which V leaves 0, passes 1/2 and reaches 1.
+/// Places along a line outward across a shadow's edge where V leaves 0, passes 1/2 and reaches 1.
 struct Edge {
   double inner = 0, middle = 0, outer = 0;
 };
@@ -176,8 +178,8 @@ Edge edge_of(const std::vector<double>& places, const std::vector<float>& visibi
   return edge;
 }
 
-// E11 (Atty et al. 2006, section 5.2.2): both the inner and the outer penumbra are there, as wide as they are; and the
-// middle of the shadow's edge stands where it does.
+// E11 (Atty et al. 2006, section 5.2.2): both the inner and the outer penumbra exist and are as wide as the true ones;
+// and the middle of the shadow's edge is at its true place.
 TEST_F(MapsPredicates, PenumbraeReachInwardAndOutwardAsFarAsTheyDo) {
   for (const double height : {0.25, 1.0, 2.0}) {
     scenes::Scene scene = bare_floor(0.5, 4);
@@ -185,8 +187,8 @@ TEST_F(MapsPredicates, PenumbraeReachInwardAndOutwardAsFarAsTheyDo) {
     std::vector<double> places;
     for (int i = 0; i < 600; ++i) places.push_back(0.5 + 2.5 * i / 600);
     const Stage stage = along_floor(scene, places, light_samples(1));
-    // A texel of the occluders' map, 2 / 126 of the plate, is that much larger on the floor; a receivers' texel is 8 /
-    // 510.
+    // A texel of the occluders' map, 2 / 126 wide on the plate, is 5 / (5 - height) times that on the floor; a
+    // receivers' texel is 8 / 510.
     const double texel = 2.0 / 126 * 5 / (5 - height) + 8.0 / 510;
     const Edge true_edge = edge_of(places, exact(stage).visibility);
     const Edge found = edge_of(places, soft(stage, {{"receiverSize", "512"}}).visibility);
@@ -203,8 +205,8 @@ TEST_F(MapsPredicates, PenumbraeReachInwardAndOutwardAsFarAsTheyDo) {
   }
 }
 
-// C3 (Eisemann et al. 2009, figure 5.8c), of this scene: what outlines make of moving plates jumps where the depth at
-// an outline does; quads, which have no outlines, jump less.
+// C3 (Eisemann et al. 2009, figure 5.8c), for this scene: as plates move, V from outlines jumps where the depth at an
+// outline jumps; V from quads, which have no outlines, jumps less.
 TEST_F(MapsPredicates, OutlinesJumpWhereDepthsAtThemDo) {
   visibility::SampleRequest request = light_samples(1024);
   request.pattern = visibility::SamplePattern::sobol;
@@ -212,7 +214,7 @@ TEST_F(MapsPredicates, OutlinesJumpWhereDepthsAtThemDo) {
   double contour_jump = 0, quad_jump = 0;
   for (int step = 0; step <= 12; ++step) {
     scenes::Scene scene = bare_floor(0.6, 3.5);
-    // The small plate's edge passes over the large plate's, at x/z = 0.457, as the light's centre sees them.
+    // Seen from the light's centre, the small plate's edge passes over the large plate's, at x/z = 0.457.
     add_quad(scene, {0.31 + 0.012 * step, 3.5, 0}, {0.3, 0, 0}, {0, 0, -0.3}).receives_shadow = false;
     add_quad(scene, {0, 1.5, 0}, {1.6, 0, 0}, {0, 0, -1.6}).receives_shadow = false;
     const Stage stage = on_floor(scene, 18, request);
@@ -245,7 +247,7 @@ TEST_F(MapsPredicates, NarrowPenumbraeStayAliasedUnderSubLights) {
       const Stage stage = on_floor(scene, 160, light_samples(1));
       const Masks truth = exact(stage),
                   found = run(maps::make_packet, stage, {{"size", "128"}, {"sublights", sub_lights}});
-      // A penumbra on the floor is height / (5 - height) wide, of which a texel is 5 (4 / 5 + 2 beside) / 126 at most.
+      // On the floor a penumbra is height / (5 - height) wide, and a texel at most 5 (4 / 5 + 2 beside) / 126.
       double penumbra = 0, picture = 0, pixels = 0;
       for (std::size_t i = 0; i < truth.visibility.size(); ++i) {
         const double square = std::pow(static_cast<double>(found.visibility[i] - truth.visibility[i]), 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Measures the predicates of docs/predicates.md.
+// Support for tests of the predicates of docs/predicates.md.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the structures that means over windows are taken from: summed areas, mip levels and N-buffers against twins,
+// Tests the structures from which means over windows are read: summed areas, mip levels and N-buffers, against twins,
 // bit by bit.
 
 #include "maps/products/map_frame.hpp"
@@ -74,7 +74,7 @@ TEST(SummedAreaTables, OfFloatsLoseWhatIntegersKeep) {
 /// A floor and a sphere under a square light, in a window or, with a wall up to the light, a hemicube.
 scenes::Scene scene_of(bool hemicube) {
   scenes::Scene scene;
-  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;  // leaves texels where nothing is
+  add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;  // leaves texels empty
   add_object(scene, "sphere", sphere({0.3, 1, 0.2}, 0.6, 8));
   if (hemicube) add_quad(scene, {2, 2, 0}, {0, 2, 0}, {0, 0, 2});
   scene.lights.push_back(ceiling_light(3, 0.5));
@@ -92,7 +92,7 @@ TEST_F(Prefilters, TablesAreSumsOfTheValuesDigits) {
   }
 }
 
-// Mip levels and N-buffers, from their finest level up: the same sums of four in the same order.
+// Mip levels and N-buffers, from their finest level up, must have the same sums of four in the same order as the twin.
 TEST_F(Prefilters, LevelsAreMeansOfTheLevelBefore) {
   for (const bool hemicube : {false, true}) {
     const Stage stage(scene_of(hemicube), 4, 4, light_samples(1));
@@ -131,7 +131,7 @@ TEST_F(Prefilters, WhatNoBuffersHoldIsRefusedWithTheSizeThatDoes) {
 }
 
 // A default size becomes the largest multiple of 64 that the buffers hold: no smaller than needed, the default itself
-// where it fits, and no less than 64 where nothing fits.
+// where it fits, and 64 where nothing fits.
 TEST(PrefilterSizes, AreReducedToWhatBuffersHold) {
   const maps::PrefilterOptions series{.kind = maps::PrefilterKind::windows,
                                       .functions = std::vector<maps::PrefilterFunction>(65)};
@@ -147,14 +147,14 @@ TEST(PrefilterSizes, AreReducedToWhatBuffersHold) {
   EXPECT_EQ(maps::size_that_fits(series, 1024, 1, 1024), 64U);
 }
 
-// A disk's and a polygon's box have their second moments; a rectangle's is itself.
+// The box of a disk, an ellipse or a polygon has the light's second moments; a rectangle's box is the rectangle itself.
 TEST(LightBox, HasTheLightsOwnMoments) {
   scenes::Scene scene = scene_of(false);
   struct Shape {
     decltype(scenes::AreaLight::shape) shape;
     glm::dvec2 half;
   };
-  // A right triangle with legs 2 along its axes: variance of x is 2²/18.
+  // A right triangle with legs of 2 along the axes: the variance of x is 2²/18.
   for (const Shape& one :
        {Shape{scenes::Rectangle{{0, 3, 0}, {0.7, 0, 0}, {0, 0, 0.2}}, {0.7, 0.2}},
         Shape{scenes::Disk{{0, 3, 0}, {0, -1, 0}, 0.5}, glm::dvec2(std::sqrt(0.75) * 0.5)},
@@ -168,8 +168,9 @@ TEST(LightBox, HasTheLightsOwnMoments) {
   }
 }
 
-// Occluders are looked for between the light's bounds: a wider light would have occluders that are not seen, a narrower
-// one more to look at. Points of the outline are at most 1 - cos(pi / 4096) of its width inside it.
+// Occluders are searched for between the light's bounds: if these were too wide, occluders would hide light that is not
+// there; if too narrow, some would be missed. Points of the sampled outline are inside it by at most 1 - cos(pi / 4096)
+// of its width.
 TEST(LightBounds, HoldTheLightAndNoMore) {
   scenes::Scene scene = scene_of(false);
   for (const decltype(scenes::AreaLight::shape)& shape :

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests maps and what is made of them, against a few lines of C++: the depths of two planes, and products against their
-// twins on maps read back from the device.
+// Tests maps and products made from them against a few lines of C++: the depths of two planes, and products against
+// their twins on maps read back from the device.
 
 #include "maps/host/caster.frag.spv.hpp"
 #include "maps/host/caster.vert.spv.hpp"
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kMapTexels = 64;
 
-/// A floor below, a sphere between, and for a two-sided light a ceiling above with a board below it.
+/// A floor below, a sphere between floor and light, and for a two-sided light a ceiling above with a board below it.
 scenes::Scene scene_around(bool two_sided, double wall_height) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -60,11 +60,12 @@ TEST_F(MapsProducts, NearestIdsAreOfTrianglesThatMayBeNearest) {
   }
 }
 
-// A receiver far smaller than the light: what shades it stands in none of its directions from the light's centre.
+// A receiver far smaller than the light: its casters are outside all directions in which the light's centre sees the
+// receiver.
 TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {0.05, 0, 0}, {0, 0, -0.05});
-  // Half the light's height up, from x = 0.3 on: hides the light from x = 0.6 on.
+  // At half the light's height, from x = 0.3 on: it hides the light from x = 0.6 on.
   add_quad(scene, {4.3, 1, 0}, {4, 0, 0}, {0, 0, -4}).receives_shadow = false;
   scene.lights.push_back(ceiling_light(2, 1));
   scene.cameras.push_back(camera({0, 0.5, 0.5}, {0, 0, 0}, 20));
@@ -75,10 +76,10 @@ TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
   for (std::size_t i = 0; i < stage.samples.size(); ++i) {
     if (stage.samples.triangle[i] < 0 || stage.samples.triangle[i] > 1) continue;
     ++receivers;
-    // The light is hidden, as seen from p, from x = 2 · 0.3 − p.x on. The share of n evenly spread points beside a line
-    // is off by log₂ n / n at most. The window is no wider than the receiver (0.05) and pcss's taps beside it (half the
+    // Seen from p, the light is hidden from x = 2 · 0.3 − p.x on. The share of n evenly spread points beside a line is
+    // off by at most log₂ n / n. The window is no wider than the receiver (0.05) and pcss's taps beside it (half the
     // light's side over the radius of a disk of its area, 0.886, on each side): 1.83 in 254 texels at the board's
-    // height 1, so half a texel moves the board's edge by 0.0036, its shadow on the light by twice that, and V, of a
+    // height 1. So half a texel moves the board's edge by 0.0036, its shadow on the light by twice that, and V, for a
     // light 2 wide, by 0.0036.
     const double x = stage.floats.origin.x + static_cast<double>(stage.samples.p[i].x);
     const double exact = (1 + 0.6 - x) / 2;
@@ -87,12 +88,12 @@ TEST_F(MapsProducts, PcssSeesCastersBesideTheReceiversOwnDirections) {
   EXPECT_GT(receivers, 20U);
 }
 
-/// Two parallel quads over all of a window, the nearer one wound one way, the farther one the other way.
+/// Two parallel quads that fill the window, with opposite windings.
 class TwoPlanes : public MapsTest {
  protected:
   static constexpr float kNear = 1, kFar = 2, kScene = 4;
 
-  /// The depths of all texels, times kScene; -1 if they are not all the same.
+  /// Returns the depth of all texels, times kScene, or -1 if they differ.
   float depth(render::DepthCompare compare, render::Cull cull) {
     const render::RasterPass pass(device(), {.name = "planes",
                                              .vertex = shaders::kCasterVert,
@@ -139,7 +140,7 @@ TEST_F(TwoPlanes, TheDepthTestKeepsTheNearestOrTheFarthest) {
 }
 
 TEST_F(TwoPlanes, CullingLeavesOneSideOut) {
-  // The nearer plane's corners run clockwise as seen with y down: it shows its back.
+  // The nearer plane's corners run clockwise as seen with y down: its back is visible.
   EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::back), kFar);
   EXPECT_EQ(depth(render::DepthCompare::less, render::Cull::front), kNear);
   EXPECT_EQ(depth(render::DepthCompare::greater, render::Cull::back), kFar);

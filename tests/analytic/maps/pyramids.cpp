@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pyramids of smallest and largest depths: what the device makes against brute force, which cells a question covers,
-// and how many nodes a walk looks at (Yang et al. 2009, section 4.2).
+// Tests pyramids of smallest and largest depths: those that the device builds against brute force, which cells a query
+// covers, and how many nodes a walk visits (Yang et al. 2009, section 4.2).
 
 #include "base/error.hpp"
 #include "maps/products/depth_pyramid.hpp"
@@ -34,7 +34,7 @@ TEST_F(MapsPyramids, EachNodeHasTheRangeOfItsTexels) {
   }
 }
 
-/// The cells that a question's nodes cover, first and last column and row, and how many nodes they are.
+/// The cells that a query's nodes cover (first and last column and row), and the number of nodes.
 struct Covered {
   glm::uvec2 lower, upper;
   std::uint32_t fetches;
@@ -62,8 +62,8 @@ Covered covered(const PyramidHeader& header, const glm::uvec2& lower, const glm:
   return result;
 }
 
-// Schwarz and Stamminger 2008: an HSM bounds more than a YSM, and that more than an MSSM, which bounds what it is
-// asked.
+// Schwarz and Stamminger 2008: a query to an HSM covers more cells than one to a YSM, and that more than one to an
+// MSSM, which covers exactly the requested cells.
 TEST_F(MapsPyramids, QuestionsCoverTheirCellsTighterInRicherPyramids) {
   constexpr std::uint32_t kSize = 36;
   std::array<PyramidHeader, 3> headers;
@@ -93,9 +93,9 @@ TEST_F(MapsPyramids, QuestionsCoverTheirCellsTighterInRicherPyramids) {
 }
 
 struct Visits {
-  std::uint32_t above_leaves = 0, leaves = 0, beside = 0;  // beside: children looked at that hold no cell asked for
+  std::uint32_t above_leaves = 0, leaves = 0, beside = 0;  // beside: visited children that hold no requested cell
 };
-/// Walks below nodes of this level, descending wherever a node holds a cell asked for.
+/// Walks below nodes of this level, and descends into every node that holds a requested cell.
 Visits walk(const PyramidHeader& header, const glm::uvec2& lower, const glm::uvec2& upper, std::uint32_t level,
             std::set<std::pair<std::uint32_t, std::uint32_t>>* cells = nullptr) {
   Visits visits;
@@ -119,9 +119,10 @@ Visits walk(const PyramidHeader& header, const glm::uvec2& lower, const glm::uve
   return visits;
 }
 
-// Yang 2009, 4.2: of an 8 × 8 kernel in which nothing is left out, an MSSM looks at 1 + 2² + 4² = 21 nodes above the
-// leaves, wherever the kernel is. They give 21 … 57 for an HSM: that is so from one node over the four that cover the
-// kernel; from the one node of the tree that covers it, a kernel astride a border of large nodes takes up to 89.
+// Yang 2009, 4.2: for an 8 × 8 kernel of which nothing is skipped, an MSSM visits 1 + 2² + 4² = 21 nodes above the
+// leaves, wherever the kernel is. The paper gives 21 … 57 for an HSM: that holds from one node above the four that
+// cover the kernel. From the single node of the tree that covers it, a kernel across a border of large nodes takes up
+// to 89.
 TEST_F(MapsPyramids, NodesAboveTheLeavesOfAnEightByEightKernel) {
   constexpr std::uint32_t kSize = 127;
   const PyramidHeader hsm = maps::pyramid_header(PyramidKind::hsm, kSize, 1, kPlenty),
@@ -138,7 +139,7 @@ TEST_F(MapsPyramids, NodesAboveTheLeavesOfAnEightByEightKernel) {
       const std::uint32_t one = walk(hsm, lower, upper, covering).above_leaves;
       least_from_one = std::min(least_from_one, one);
       most_from_one = std::max(most_from_one, one);
-      // The finest level of which four nodes cover the kernel, and a node over them if they are more than one.
+      // The finest level at which four nodes cover the kernel, and one node above them if they are more than one.
       const std::uint32_t four = maps::gpu::pyramid_query(lower, upper, hsm.whole, hsm.top).level;
       const std::uint32_t count = four == covering ? one : 1 + walk(hsm, lower, upper, four).above_leaves;
       least_from_four = std::min(least_from_four, count);
@@ -170,13 +171,14 @@ TEST_F(MapsPyramids, AWalkFindsEachCellOfAnyRectangleOnceFromOneRootOrMany) {
   }
 }
 
-// Schwarz and Stamminger 2007: 4/3 of the map's ranges for an HSM, a range a texel and level for an MSSM.
+// Schwarz and Stamminger 2007: an HSM takes 4/3 of the map's ranges, an MSSM one range per texel and level.
 TEST_F(MapsPyramids, BytesAreThoseOfTheStructureAndFinestNodesGiveWay) {
   constexpr double kMega = 1 << 20;
   const auto bytes = [](PyramidKind kind) {
     return static_cast<double>(maps::pyramid_bytes(maps::pyramid_header(kind, 1024, 1, kPlenty), 1));
   };
-  // Cells are a side more than texels: 2/1024 more of them, and in a quadtree a node more at each level's border.
+  // There is one more cell than texels on each side: 2/1024 more cells in all, and in a quadtree one more node at each
+  // level's border.
   EXPECT_NEAR(bytes(PyramidKind::hsm), 4.0 / 3 * 8 * kMega, 0.01 * 11 * kMega);
   EXPECT_NEAR(bytes(PyramidKind::mssm), 11 * 8 * kMega, 0.003 * 88 * kMega);
   EXPECT_LT(bytes(PyramidKind::ysm), 2 * bytes(PyramidKind::hsm));

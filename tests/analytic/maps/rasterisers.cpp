@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps drawn by Vulkan and by OpenGL: against the triangles in double, against each other, and what methods make of
-// them. The twin itself against triangles whose coverage is known.
+// Tests maps drawn by Vulkan and by OpenGL: against the triangles in double, against each other, and by the V that
+// methods compute from them. Also tests the twin itself with triangles whose coverage is known.
 
 #include "base/error.hpp"
 #include "maps/filters/methods.hpp"
@@ -23,7 +23,7 @@ using maps::Rasteriser;
 using selftest::RasterTwin;
 using selftest::Surface;
 
-/// A face that looks along z, [−1, 1]², of a light point at 0.
+/// A face [−1, 1]² that looks along z, for a light point at 0.
 maps::gpu::CasterPush straight() {
   return {.point = {0, 0, 0},
           .near = 0x1p-20F,
@@ -37,7 +37,8 @@ maps::gpu::CasterPush straight() {
           .offset_units = 0};
 }
 
-// The diagonal of a square passes through the centres of a map's own diagonal: those are open, all others certain.
+// The diagonal of a square passes through the centres of a map's own diagonal texels: these are undecided, all others
+// certain.
 TEST(RasterTwin, IsSureButWithinAStepOfAnEdge) {
   constexpr std::uint32_t kSize = 16;
   const std::vector<glm::vec3> corners{{-2, -2, 2}, {2, -2, 2}, {2, 2, 2}};  // below the diagonal, z / far = 1/2
@@ -59,8 +60,8 @@ TEST(RasterTwin, IsSureButWithinAStepOfAnEdge) {
   }
 }
 
-// A wall that runs away from the light point to the light's plane and behind it, along x = 1/3: seen where x/z > 1/3,
-// at z = 1 / (3 x/z). A step of x/z changes its depth by so much of its square.
+// A wall along x = 1/3 that runs away from the light point to the light's plane and behind it: it is visible where x/z
+// > 1/3, at z = 1 / (3 x/z). A step in x/z changes its depth in proportion to the square of the depth.
 TEST(RasterTwin, KnowsDepthsOfSurfacesThatCrossTheLightsPlane) {
   constexpr std::uint32_t kSize = 64;
   constexpr double kStep = 1.0 / 256;
@@ -114,7 +115,7 @@ TEST(RasterTwin, JudgesWhatAMapHolds) {
   EXPECT_NEAR(selftest::largest_disagreement(surfaces, true), 0.02, 1e-12);
 }
 
-/// Makes a crowd with loose triangles among its things.
+/// Makes a crowd with loose triangles among its objects.
 scenes::Scene crowd_with_needles(bool wall, bool two_sided) {
   scenes::Scene scene = selftest::crowd(wall, two_sided);
   std::mt19937 random(8);
@@ -184,10 +185,10 @@ std::vector<Named> every_method() {
           {"layered-attenuation", maps::make_layered_attenuation, {}}};
 }
 
-// V is a function of the maps: of the same texels it is the same in every bit. Mesa's two drivers are one rasteriser
-// with two compilers before it; they cover the same texels, and depths differ in the last bit. That turns a depth test
-// only where a receiver lies within a rounding (10⁻⁷ of the depth) of its threshold, which is 10⁻⁴ and more of depths
-// wide in these maps: fewer than a tap in a thousand, and so much of V in the mean.
+// V is a function of the maps: for the same texels it is the same in every bit. Mesa's two drivers are one rasteriser
+// with two compilers; they cover the same texels, and depths differ in the last bit. That changes a depth test only
+// where a receiver lies within a rounding (10⁻⁷ of the depth) of its threshold, and in these maps thresholds are spread
+// over 10⁻⁴ of the depth and more: fewer than one tap in a thousand, and as much of V in the mean.
 TEST_F(MapsRasterisers, EveryMethodGivesTheSameVOfTheSameMaps) {
   const Stage stage(crowd_with_needles(false, false), 24, 24, light_samples(16));
   const selftest::Check texels = selftest::check_rasterisers_agree(device(), stage, 32);
@@ -215,7 +216,7 @@ TEST_F(MapsRasterisers, EveryMethodGivesTheSameVOfTheSameMaps) {
     if (texels.differing == 0) {
       EXPECT_EQ(opengl.visibility, vulkan.visibility);
       EXPECT_EQ(opengl.words, vulkan.words);
-    } else if (texels.largest < 1e-6) {  // no texel was covered by one alone
+    } else if (texels.largest < 1e-6) {  // both rasterisers covered the same texels
       EXPECT_LE(sum, 1e-3 * static_cast<double>(vulkan.visibility.size()));
     }
   }

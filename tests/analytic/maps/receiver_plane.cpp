@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// receiverPlane: texels are compared with the receiver's plane, or with its own depth, as papers have it. (What the
-// bias forgives in either: Bias.*; that hierarchies know of it: MapsIdentities.*.)
+// Tests receiverPlane: texels are compared with the receiver's plane, or with its own depth, as in papers. (Bias.*
+// tests how much the bias forgives in either case, MapsIdentities.* that hierarchies take it into account.)
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/centre_maps.hpp"
@@ -36,7 +36,7 @@ class ReceiverPlane : public MapsTest {
   }
 };
 
-// A receiver parallel to the light has one depth at every place where its plane is asked.
+// A receiver parallel to the light has the same depth wherever its plane is evaluated.
 TEST_F(ReceiverPlane, MakesNoDifferenceToWhatIsParallelToTheLight) {
   const Stage stage = on_floor(square_above_plate(), 10, light_samples(16));
   for (const char* words : kVariants) {
@@ -45,8 +45,8 @@ TEST_F(ReceiverPlane, MakesNoDifferenceToWhatIsParallelToTheLight) {
   }
 }
 
-// A plane that is tilted to the light and nothing else (Eisemann et al. 2009, figure 4.3): in its own depth it shades
-// itself, by its plane not.
+// A plane that is tilted to the light and nothing else (Eisemann et al. 2009, figure 4.3): compared by its own depth it
+// shades itself, compared by its plane it does not.
 TEST_F(ReceiverPlane, OffATiltedPlaneShadesItself) {
   for (const double tilt : {30.0, 60.0}) {
     const double angle = tilt * std::numbers::pi / 180;
@@ -75,23 +75,24 @@ TEST_F(ReceiverPlane, OffATiltedPlaneShadesItself) {
   }
 }
 
-// A plane's horizon cuts the light: the share above it is (4 + 5 / tan 60) / 8 = .86. Of what stands in front of the
-// plane a board hides half of the light, and another, beyond the receiver's plane, of what is below the horizon 3/32:
-// hidden in its own depth alone, which knows of no horizon (V is at most the share above).
+// A plane's horizon cuts the light: the share above it is (4 + 5 / tan 60) / 8 = 0.86. One board in front of the plane
+// hides half of the light. Another, beyond the receiver's plane, hides 3/32 of it, below the horizon: that counts only
+// with the own depth, which knows no horizon (V is at most the share above).
 TEST_F(ReceiverPlane, OffWhatIsBelowTheHorizonHidesLight) {
   constexpr double kTilt = std::numbers::pi / 3;
   const glm::dvec3 along(std::cos(kTilt), std::sin(kTilt), 0), up(-std::sin(kTilt), std::cos(kTilt), 0);
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, 0.01 * along, {0, 0, -0.01});
-  add_quad(scene, {-1, 2, 0}, {1, 0, 0}, {0, 0, -2});       // seen on the light from -5 to 0
-  add_quad(scene, {1.65, 2, 0}, {0.35, 0, 0}, {0, 0, -2});  // and from 3.25 to 5
+  add_quad(scene, {-1, 2, 0}, {1, 0, 0}, {0, 0, -2});       // appears on the light from -5 to 0
+  add_quad(scene, {1.65, 2, 0}, {0.35, 0, 0}, {0, 0, -2});  // appears from 3.25 to 5
   scene.lights.push_back(ceiling_light(5, 4));
   scene.cameras.push_back(camera({-3, 0, 3}, {0, 0, 0}));
   const Stage stage(scene, 2, 2, light_samples(16), grid_samples(2, {0, 0, 0}, 0.001 * along, {0, 0, 0.001}, up));
   for (const char* words : {"contour", "contour:search=none:traversal=flat", "packet", "backproject"}) {
     const Masks on = picture(stage, words, {{"size", "256"}}),
                 off = picture(stage, words, {{"size", "256"}, {"receiverPlane", "off"}});
-    // Texels are .007 wide on the boards, .017 on the light, .2 % of it: each of the three edges may be one off.
+    // Texels are 0.007 wide on the boards and 0.017 on the light, 0.2 % of it: each of the three edges may be off by
+    // one.
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       EXPECT_NEAR(on.visibility[i], (4 + 5 / std::tan(kTilt)) / 8 - 0.5, 0.007) << words;
       EXPECT_NEAR(off.visibility[i], 0.5 - 3.0 / 32, 0.007) << words;
@@ -99,16 +100,16 @@ TEST_F(ReceiverPlane, OffWhatIsBelowTheHorizonHidesLight) {
   }
 }
 
-// Hourcade and Nicolas 1985: a texel that names the nearest surface needs no bias, and no bias can move a shadow. The
-// price: where triangles of several planes share a texel, all but one of them are dark.
+// Hourcade and Nicolas 1985: a texel that names the nearest surface needs no bias, so that no bias moves a shadow. The
+// price is that where triangles of several planes share a texel, all but one of them are dark.
 TEST_F(ReceiverPlane, IdsNeedNoBiasAndLoseWhatSharesATexel) {
   for (const double tilt : {0.0, 30.0, 70.0}) {
     const double angle = tilt * std::numbers::pi / 180;
     const glm::dvec3 along(std::cos(angle), std::sin(angle), 0), up(-std::sin(angle), std::cos(angle), 0);
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, 2.0 * along, {0, 0, -2});
-    // The quad is as near above the plane as floats allow: the bias that forgives a plane its slope would forgive this,
-    // too.
+    // The quad is as near above the plane as floats allow: a bias large enough for the plane's slope would forgive this
+    // quad, too.
     add_quad(scene, 1e-4 * up, 0.5 * along, {0, 0, -0.5}).receives_shadow = false;
     scene.lights.push_back(ceiling_light(5, 0.25));
     scene.cameras.push_back(camera({0, 3, 3}, {0, 0, 0}));
@@ -120,12 +121,12 @@ TEST_F(ReceiverPlane, IdsNeedNoBiasAndLoseWhatSharesATexel) {
       if (std::abs(s - 0.5) < 0.05 || std::abs(t - 0.5) < 0.05) continue;  // within texels of the board's edge
       EXPECT_EQ(ids.visibility[i], s < 0.5 && t < 0.5 ? 0.0F : 1.0F) << tilt << " degrees, pixel " << i;
     }
-    // The plane's own triangles, as seen from below it, stand before the light, and are the nearest.
+    // Seen from below, the plane's own triangles are between receiver and light, and are the nearest.
     const Stage below(scene, 8, 8, light_samples(1), grid_samples(8, {0, 0, 0}, 1.5 * along, {0, 0, 1.5}, -up));
     for (const float v : picture(below, "shadow-map", {{"test", "id"}}).visibility) EXPECT_EQ(v, 0.0F) << tilt;
   }
-  // A ball of planes as small as texels: by depth it is lit on its upper side, by ids only what a texel happens to
-  // name.
+  // A ball of planes as small as texels: by depth its upper side is lit, by ids only those planes that a texel happens
+  // to name.
   scenes::Scene scene;
   add_quad(scene, {0, -2, 0}, {2, 0, 0}, {0, 0, -2});
   add_object(scene, "ball", sphere({0, 0, 0}, 1, 40));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what the error budget relies on: methods that are to differ in one thing alone do.
+// Tests what the error budget relies on: methods that should differ in one respect only do differ in that only.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
@@ -23,7 +23,7 @@ class MapsRepairs : public MapsTest {
   }
 };
 
-// Layers of backproject are those of backproject-peel with all texels.
+// backproject's layers are those of backproject-peel with all texels.
 TEST_F(MapsRepairs, LayersAreThoseOfPeeling) {
   for (const scenes::Scene& scene : {square_above_plate(), box_over_floor(0.3), plates_with_gap(false)}) {
     const Stage stage = on_floor(scene, 10, light_samples(1));
@@ -42,7 +42,7 @@ TEST_F(MapsRepairs, LayersAreThoseOfPeeling) {
   }
 }
 
-// fill=shared against every texel one by one, as the other fills are.
+// Compares fill=shared with a sum over all texels, as the other fills are tested.
 TEST_F(MapsRepairs, SharedBordersAreTheNeighbours) {
   for (const scenes::Scene& scene : {sphere_over_floor(), oblique_quad(0.4), square_above_plate()}) {
     const Stage stage = on_floor(scene, 10, light_samples(1));
@@ -55,9 +55,9 @@ TEST_F(MapsRepairs, SharedBordersAreTheNeighbours) {
   }
 }
 
-// Patches with shared borders tile a rectangle of the light on a plate tilted about one axis of the map: the sum is the
-// union. A rectangle's count of 64 × 64 samples is off by a row at its lower and upper side together, and by a sample
-// in each row: 2 / 64. Without shared borders gaps and overlaps make the two differ.
+// On a plate tilted about one axis of the map, patches with shared borders tile a rectangle on the light: the sum
+// equals the union. A count of 64 × 64 samples in a rectangle is off by a row at its lower and upper side together, and
+// by one sample in each row: 2 / 64. Without shared borders gaps and overlaps make the two differ.
 TEST_F(MapsRepairs, WithSharedBordersTheSumIsTheUnion) {
   scenes::Scene scene = bare_floor(0.6);
   add_quad(scene, {0, 2.5, 0}, {0.8, 1.2, 0}, {0, 0, -0.9}).receives_shadow = false;
@@ -75,7 +75,7 @@ TEST_F(MapsRepairs, WithSharedBordersTheSumIsTheUnion) {
   EXPECT_GT(apart("none"), 0.1);
 }
 
-// Pixels that nobody will look at are left out, and the wanted ones are the same to the bit.
+// Pixels that are not wanted are left out, and the wanted ones are the same to the bit.
 TEST_F(MapsRepairs, WantedPixelsAreTheSameAndOthersAreLeftOut) {
   const Stage stage(parallel_square(), 24, 24, light_samples(16));
   std::vector<std::uint32_t> wanted;
@@ -99,7 +99,7 @@ TEST_F(MapsRepairs, WantedPixelsAreTheSameAndOthersAreLeftOut) {
   }
 }
 
-// Parts of a light that is no rectangle are polygons of its plane that lie in it and are all of it.
+// Parts of a light that is not a rectangle are polygons in its plane that lie inside it and cover all of it.
 TEST_F(MapsRepairs, PartsOfAnyLightAreAllOfIt) {
   const std::vector<decltype(scenes::AreaLight::shape)> shapes{
       scenes::Disk{{0.3, 5, 0}, {0.2, -1, 0.1}, 0.8}, scenes::Ellipse{{0, 5, 0}, {0.9, 0, 0}, {0.3, 0, 0.5}},
@@ -135,7 +135,7 @@ TEST_F(MapsRepairs, PartsOfAnyLightAreAllOfIt) {
   }
 }
 
-// Parts of a light have its samples, as close together as they are small.
+// Each part of a light has the light's samples, scaled down to the part.
 TEST_F(MapsRepairs, PartsOfALightHaveItsSamples) {
   const Stage stage(parallel_square(), 8, 8, light_samples(16));
   const auto parts = visibility::light_parts(stage.light, 3);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of docs/accumulate.md, docs/pcss.md and docs/shadow-map.md, as measured and as written there.
+// Compares the tables of docs/accumulate.md, docs/pcss.md and docs/shadow-map.md with measurements.
 
 #include "scenes/formats/reader.hpp"
 #include "tests/analytic/maps/documented_table.hpp"
@@ -51,7 +51,7 @@ TEST_F(MapsTable, AccumulateOverMapResolution) {
   }
 }
 
-/// A curved receiver: pairs wrongly dark are acne, pairs wrongly lit are leaks.
+/// On a curved receiver, pairs that are wrongly dark are acne, pairs that are wrongly lit are leaks.
 TEST_F(MapsTable, AccumulateOverBias) {
   const DocumentedTable documented(page("accumulate.md"), "| bias | size 256");
   const Stage stage(scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / "bunny.json"), 64, 64,
@@ -117,7 +117,7 @@ TEST_F(MapsTable, PcssAndShadowMapAgainstTheArea) {
       const Errors found = errors(
           kTaps[row], run(maps::make_pcss, stage, {{"blockerSamples", kTaps[row]}, {"filterSamples", kTaps[row]}}));
       documented.expect(row, column, found.rmse);
-      // Means are differences of much that cancels: to a unit of the last digit of what the RMSE may be off by.
+      // Mean errors are sums that nearly cancel: the tolerance is a tenth of the RMSE, plus a unit of the last digit.
       EXPECT_NEAR(found.mean, documented.value(row, column + 1), 0.1 * documented.value(row, column) + 1e-4) << name;
     }
     // docs/shadow-map.md: "RMSE of V is 0.144 over the floor, whatever the map's size".

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests in closed form where maps look from and to: points of a light, windows, receivers and blockers apart.
+// Tests in closed form the points of a light that maps look from, their windows, and the separation of receivers and
+// blockers.
 
 #include "maps/backprojection/soft_shadow_map/soft_scene.hpp"
 #include "maps/host/map_fit.hpp"
@@ -25,7 +26,7 @@ scenes::Scene under(const decltype(scenes::AreaLight::shape)& shape) {
 
 class MapShapes : public MapsTest {};
 
-// Roberts 2018: multiples of 1 / 1.3247… and of its square from (1/2, 1/2) on, modulo 1.
+// Roberts 2018: multiples of 1 / 1.3247… and of its square, starting from (1/2, 1/2), modulo 1.
 TEST_F(MapShapes, ThePatternBeginsWithTheR2Sequence) {
   constexpr std::array<std::pair<double, double>, 3> kFirst{
       {{0.5, 0.5}, {0.25487766624669285, 0.06984029099805315}, {0.0097553324933857, 0.6396805819961063}}};
@@ -39,8 +40,9 @@ TEST_F(MapShapes, ThePatternBeginsWithTheR2Sequence) {
   }
 }
 
-// The square of adaptive-light on lights that are none: rings around the centroid, their corners at 225 degrees of a
-// disk, a third of the way round at the second corner of a triangle, which has a third of its area between two corners.
+// adaptive-light's unit square on lights that are not rectangles: squares become rings around the centroid. Corners lie
+// at 225 degrees and so on of a disk. In a triangle the second corner is a third of the way round, because two
+// neighbouring corners and the centroid enclose a third of the area.
 TEST_F(MapShapes, TheSquareLiesInRingsOnOtherLights) {
   const Stage round(under(scenes::Disk{{0.2, 5, 0}, {0, -1, 0}, 0.9}), 2, 2, light_samples(1));
   const visibility::LightFrame frame = visibility::light_frame(round.light);
@@ -62,8 +64,8 @@ TEST_F(MapShapes, TheSquareLiesInRingsOnOtherLights) {
   expect_at(polygon.at({0.75, 0.5 - 1.0 / 12}), 0.5 * (middle + second));
 }
 
-// A floor of ±4 at depth 5 is ±0.8 wide. What shades it from a light of half-size 1 is seen up to 1 (1/3 − 1/5) beside
-// it, if it is at depth 3. A texel of what there is, in `size` − 2 of them, is added on every side.
+// A floor of ±4 at depth 5 is ±0.8 wide. Casters at depth 3 that shade it from a light of half-size 1 are seen up to 1
+// (1/3 − 1/5) beside it. A texel is added on every side; `size` − 2 texels make up the rest.
 TEST_F(MapShapes, AWindowHoldsReceiversWhatShadesThemAndATexel) {
   constexpr std::uint32_t kSize = 64;
   scenes::Scene scene = under(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}});
@@ -84,7 +86,8 @@ TEST_F(MapShapes, AWindowHoldsReceiversWhatShadesThemAndATexel) {
   }
 }
 
-// soft-shadow-map's receiver is what is largest toward the light: a floor, not a larger wall that is seen edge-on.
+// soft-shadow-map's receiver is the object with the largest area toward the light: a floor, not a larger wall that is
+// seen edge-on.
 TEST_F(MapShapes, TheReceiverIsTheLargestAsTheLightSeesIt) {
   scenes::Scene scene = under(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}});
   add_quad(scene, {0.1, -10, 0}, {0, 9, 0}, {0, 0, 9});
@@ -96,8 +99,8 @@ TEST_F(MapShapes, TheReceiverIsTheLargestAsTheLightSeesIt) {
   }
 }
 
-// convolution's plane, where all casters are seen edge-on, is at the mean of their triangles' heights: of an upright
-// board between depths 2 and 3.5, whose triangles have their middles at 2.5 and 3, and of one between 2 and 2.3.
+// If all casters are seen edge-on, convolution's plane is at the mean height of their triangles: here of an upright
+// board between depths 2 and 3.5, whose triangles' middles are at 2.5 and 3, and of one between 2 and 2.3.
 TEST_F(MapShapes, UprightBlockersCountByTheirTriangles) {
   scenes::Scene scene = under(scenes::Rectangle{{0, 5, 0}, {1, 0, 0}, {0, 0, 1}});
   scene.objects[0].casts_shadow = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Silhouette maps: outlines between texels against closed forms, and what two of them in a texel do.
+// Tests silhouette maps: outlines between texels against closed forms, and what happens to two outlines in one texel.
 
 #include "maps/products/silhouette_points.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -16,9 +16,9 @@ using maps::SilhouettePoint;
 TEST(SilhouettePoints, AreEndsOrLieOnDiagonals) {
   constexpr std::uint32_t kCount = 4;
   std::vector<SilhouettePoint> cells(kCount * kCount);
-  // y = 0.25 + x/2 from x = 0.2 to 3.5. Cell (0, 0): its end. Cell (1, 0) from (1, 0.75) to (1.5, 1): x + y = 1 there
-  // where 1.5 x' + 0.75 = 1, x' = 1/6; y = x where 0.75 − x'/2 = 0: not before 1. Cell (1, 1) from (1.5, 1): x + y = 1
-  // where 0.5 + t + t/2 = 1, t = 1/3; y = x is missed.
+  // The line y = 0.25 + x/2 from x = 0.2 to 3.5. Cell (0, 0) gets its end. In cell (1, 0), from (1, 0.75) to (1.5, 1),
+  // it meets x + y = 1 where 1.5 x' + 0.75 = 1, x' = 1/6, and y = x where 0.75 − x'/2 = 0, which is beyond the cell. In
+  // cell (1, 1), from (1.5, 1), it meets x + y = 1 where 0.5 + t + t/2 = 1, t = 1/3, and misses y = x.
   maps::add_silhouette({{0.2, 0.35}, 2}, {{3.5, 2.0}, 2}, kCount, cells);
   const auto at = [&](std::uint32_t x, std::uint32_t y) { return cells[y * kCount + x]; };
   EXPECT_NEAR(glm::length(at(0, 0).at - glm::dvec2(0.2, 0.35)), 0, 1e-12);
@@ -26,16 +26,16 @@ TEST(SilhouettePoints, AreEndsOrLieOnDiagonals) {
   EXPECT_NEAR(glm::length(at(1, 1).at - glm::dvec2(0.5 + 1.0 / 3, 1.0 / 6)), 0, 1e-12);
   EXPECT_EQ(at(3, 3).depth, 0);
   EXPECT_EQ(at(3, 3).at, glm::dvec2(0.5));
-  // A silhouette that crosses both diagonals has its point midway: x = 2.4 crosses them at 0.4 and 0.6.
+  // If a silhouette crosses both diagonals, its point is midway: x = 2.4 crosses them at 0.4 and 0.6.
   std::vector<SilhouettePoint> upright(kCount * kCount);
   maps::add_silhouette({{2.4, -3}, 1}, {{2.4, 9}, 3}, kCount, upright);
   for (std::uint32_t y = 0; y < kCount; ++y)
     EXPECT_NEAR(glm::length(upright[y * kCount + 2].at - glm::dvec2(0.4, 0.5)), 0, 1e-12);
-  // 1/depth is linear: in cell y = 1, a share of (3 + 1.5)/12 of the way.
+  // 1/depth is linear along the edge: the point in cell y = 1 is at (3 + 1.5)/12 of its length.
   EXPECT_NEAR(upright[kCount + 2].depth, 1 / (1 - 4.5 / 12 * (1 - 1.0 / 3)), 1e-12);
 }
 
-/// The nearest edge of a cell counts, in whatever order they come.
+/// The nearest edge in a cell counts, whatever the order of edges.
 TEST(SilhouettePoints, DependOnNoOrder) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> place(-1, 9), depth(1, 4);
@@ -55,8 +55,8 @@ TEST(SilhouettePoints, DependOnNoOrder) {
 class SilhouetteMaps : public MapsTest {
  protected:
   static constexpr std::uint32_t kSide = 160;
-  /// Pixels of the floor whose V is not the hard shadow of a board, given by its corner and sides; only those that are
-  /// farther than `beyond` from its corners' shadows.
+  /// Counts pixels of the floor whose V is not the hard shadow of a board, which is given by its middle and half-sides;
+  /// pixels within `beyond` of the shadows of its corners are skipped.
   struct Wrong {
     int pixels = 0, shaded = 0;
   };
@@ -87,7 +87,7 @@ class SilhouetteMaps : public MapsTest {
 };
 
 /// A turned board, level or tilted, over a floor in a map of 64 texels, each 0.065 wide there: its outline is straight,
-/// where a hard shadow's has steps. The texels that its corners are in are left out.
+/// whereas a hard shadow's has steps. The texels around its corners are skipped.
 TEST_F(SilhouetteMaps, OutlinesAreStraight) {
   for (const double rise : {0.0, 0.3}) {
     const glm::dvec3 middle(0.11, 2, 0.07), u(0.62, rise, 0.23), v(-0.2, 0.0, 0.539130434782608);
@@ -108,12 +108,12 @@ TEST_F(SilhouetteMaps, OutlinesAreStraight) {
   }
 }
 
-/// Two outlines in one texel: of a bar half a texel wide, between the texels' centres, nothing is seen, as published;
-/// one 2.6 texels wide has both its sides.
+/// Two outlines in one texel: a bar half a texel wide between texel centres is lost, as in the paper; one 2.6 texels
+/// wide has both its sides.
 TEST_F(SilhouetteMaps, ABarWithinATexelIsLost) {
   for (const bool wide : {false, true}) {
     constexpr double kTexel = 2 * 0.4 / 62;  // at distance 1
-    // A texel's centre is at ± half a texel from the middle of an even map: the bar is around 0.
+    // In a map of even size, texel centres are ± half a texel from the middle: the bar is between them.
     const glm::dvec3 middle(0, 2, 0), u((wide ? 1.3 : 0.25) * kTexel * 3, 0, 0), v(0, 0, 0.7);
     scenes::Scene scene = bare_floor(0.3);
     add_quad(scene, middle, u, v).receives_shadow = false;

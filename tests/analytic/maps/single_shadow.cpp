@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Penumbrae made of one hard shadow: under the edge of a half plane each paper's formula is a closed form, and so is
-// what each of them gets wrong.
+// Tests penumbrae made from one hard shadow: under the edge of a half-plane each paper's formula has a closed form, and
+// so has its error.
 
 #include "maps/products/light_shape.hpp"
 #include "maps/single_shadow/flood.hpp"
@@ -26,20 +26,20 @@ double cubic(double t) {
   return s * s * (3 - 2 * s);
 }
 
-/// V beside and below the edge; x > 0 is in the hard shadow.
+/// V near the edge of a half-plane; x > 0 is in the hard shadow.
 struct UnderAnEdge {
   double light_half, height;
-  double radius = 2 * light_half / std::sqrt(std::numbers::pi);  // of the disk of the light's area
+  double radius = 2 * light_half / std::sqrt(std::numbers::pi);  // of a disk of the light's area
   double z_v = 5 - height;
-  double half_width = radius * (1 / z_v - 1.0 / 5);  // of the penumbra, as the centre sees it
+  double half_width = radius * (1 / z_v - 1.0 / 5);  // of the penumbra, as the light's centre sees it
 
-  [[nodiscard]] double exact(double x) const {  // of the square: linear
+  [[nodiscard]] double exact(double x) const {  // for the square light V is linear
     return std::clamp(0.5 - x / 5 / (2 * light_half * (1 / z_v - 1.0 / 5)), 0.0, 1.0);
   }
   [[nodiscard]] double both_sides(double x) const { return std::clamp(0.5 - x / 5 / (2 * half_width), 0.0, 1.0); }
   [[nodiscard]] double outside(double x) const { return x > 0 ? 0 : std::min(-x / 5 / half_width, 1.0); }
   [[nodiscard]] double inside(double x) const { return std::clamp(1 - x / 5 / half_width, 0.0, 1.0); }
-  /// Wyman and Hansen: depths of the cone's surface and of the floor, from the silhouette's.
+  /// Wyman and Hansen: from the depths of the silhouette, the cone's surface and the floor.
   [[nodiscard]] double penumbra_map(double x) const {
     if (x > 0) return 0;
     const double cone = 1 / z_v + x / 5 / radius;
@@ -60,8 +60,8 @@ class MapsSingleShadow : public MapsTest {
     const MapVariant variant = MapVariant(words).with({{"size", "512"}});
     return run(*variant.make(device()), stage);
   }
-  /// Texels are 1.6e-3 wide as the centre sees them, or 5e-3 where the window holds casters beside the floor: half a
-  /// texel here and half there of the penumbra's width, times the steepest slope.
+  /// Seen from the light's centre texels are 1.6e-3 wide, or 5e-3 if the window holds casters beside the floor. The
+  /// tolerance is half a texel at either end over the penumbra's width, times the steepest slope.
   static void expect_line(const std::string& words, double light_half, double height,
                           const std::function<double(double)>& v, double tolerance) {
     const Masks found = line(words, half_plane(height, light_half));
@@ -91,18 +91,18 @@ TEST_F(MapsSingleShadow, UnderAnEdgeEachPapersFormulaIsAClosedForm) {
         "parker:radius=140", light, height, [&](double x) { return cubic(edge.outside(x)); }, 2 * step);
     expect_line(
         "penumbra-map:filter=nearest", light, height, [&](double x) { return edge.penumbra_map(x); }, 3 * step);
-    // The width of all silhouettes at their mean height is Parker's.
+    // All silhouettes are at their mean height here, so that smoothies' one width is Parker's.
     expect_line(
         "smoothies:filter=nearest", light, height, [&](double x) { return cubic(edge.outside(x)); }, 2 * step);
-    // A pixel of the flood is 0.002 as the centre sees it.
+    // A pixel of the flood is 0.002 wide, as the light's centre sees it.
     expect_line(
         "arvo", light, height, [&](double x) { return cubic(edge.both_sides(x)); },
         1.5 * step + 0.0015 / edge.half_width);
   }
 }
 
-// A rectangle's side past an edge along it: V is linear. Both sides of the border, with the light's own half width in
-// place of its disk's radius, are then the truth.
+// As a rectangle light's side moves past an edge parallel to it, V is linear. So a penumbra on both sides of the border
+// is the truth if the light's half-width replaces the radius of its disk.
 TEST_F(MapsSingleShadow, BothSidesOfAnEdgeAreTheTruthButForTheRadius) {
   const UnderAnEdge edge{0.5, 2};
   for (double x = -1; x < 1; x += 0.01) {
@@ -128,9 +128,9 @@ TEST_F(MapsSingleShadow, FalloffsAreParkersPolynomialAndSine) {
       "brabec-seidel:falloff=cubic", 0.5, 2, [&](double x) { return cubic(edge.both_sides(x)); }, 2 * step);
 }
 
-// Atty et al. 2006, section 1, Eisemann et al. 2009, section 5.3.1: with outer penumbrae alone the umbra is the whole
-// hard shadow. Under a plate that a large light sees past there is little of it, and methods that know both sides have
-// no more (docs/predicates.md, E12).
+// Atty et al. 2006, section 1, Eisemann et al. 2009, section 5.3.1: with outer penumbrae only, the umbra is the whole
+// hard shadow. Under a plate that a large light sees past, the true umbra is small, and methods with penumbrae on both
+// sides find no larger one (docs/predicates.md, E12).
 TEST_F(MapsSingleShadow, OuterPenumbraeOverestimateTheUmbraAndInnerOnesLoseIt) {
   scenes::Scene scene = bare_floor(0.6);
   add_quad(scene, {0, 2, 0}, {0.55, 0, 0}, {0, 0, -0.55}).receives_shadow = false;
@@ -154,18 +154,18 @@ TEST_F(MapsSingleShadow, OuterPenumbraeOverestimateTheUmbraAndInnerOnesLoseIt) {
   EXPECT_LT(inner_umbra, 1.8);
 }
 
-// One width for all: right at one height alone (Chan and Durand choose it by hand).
+// One width for all silhouettes is right at one height only (Chan and Durand choose it by hand).
 TEST_F(MapsSingleShadow, SmoothiesAreRightAtOneHeight) {
   const UnderAnEdge near{0.5, 1}, far{0.5, 3};
   const std::string width = fmt::format("smoothies:filter=nearest:width={}", near.radius / near.z_v);
   expect_line(
       width, 0.5, 1, [&](double x) { return cubic(near.outside(x)); }, 0.0048 / near.half_width);
-  // Nearer to the light the strip is as wide as before where it should be 4 / 2 times as wide.
+  // Nearer to the light the strip keeps its width, although it should be 4 / 2 times as wide.
   expect_line(
       width, 0.5, 3, [&](double x) { return cubic(2 * far.outside(x)); }, 0.0096 / far.half_width);
 }
 
-// Eisemann et al. 2009, section 5.2.1: the search's radius is bounded, and penumbrae with it.
+// Eisemann et al. 2009, section 5.2.1: the search's radius is bounded, and so is the penumbra's width.
 TEST_F(MapsSingleShadow, AShortSearchEndsPenumbrae) {
   const scenes::Scene scene = half_plane(2, 0.5);
   const Stage stage = along_floor(scene, places(), light_samples(1));
@@ -187,8 +187,8 @@ TEST_F(MapsSingleShadow, AShortSearchEndsPenumbrae) {
   EXPECT_GT(cut, 30U);
 }
 
-// Eisemann et al. 2009, section 5.2.1: what is flooded begins in the picture. The same places with the border outside
-// have no penumbra.
+// Eisemann et al. 2009, section 5.2.1: the flood starts from borders in the picture. The same places without the border
+// in the picture have no penumbra.
 TEST_F(MapsSingleShadow, AFloodKnowsNoBorderOutsideOfThePicture) {
   std::vector<double> beside;
   for (const double x : places()) {
@@ -204,7 +204,7 @@ TEST_F(MapsSingleShadow, AFloodKnowsNoBorderOutsideOfThePicture) {
   EXPECT_GT(lost, 30U);
 }
 
-// Object ids need no bias and know no shadow of an object on itself (Hourcade and Nicolas 1985; Eisemann et al. 2009,
+// Object ids need no bias, and ignore an object's shadow on itself (Hourcade and Nicolas 1985; Eisemann et al. 2009,
 // section 4.1.2).
 TEST_F(MapsSingleShadow, ObjectIdsNeedNoBiasAndLoseSelfShadows) {
   scenes::Scene scene = bare_floor(0.3);
@@ -229,7 +229,7 @@ TEST_F(MapsSingleShadow, ObjectIdsNeedNoBiasAndLoseSelfShadows) {
   };
   EXPECT_EQ(lit_on_steps(plain, "brabec-seidel:bias=0:receiverPlane=off"), 1.0);
   EXPECT_LT(lit_on_steps(plain, "brabec-seidel:bias=0:receiverPlane=off:ids=off"), 0.9);
-  // The same object's second part above the first.
+  // A second part of the same object, above the first.
   scenes::Scene stacked = bare_floor(0.3);
   auto both = lower;
   both.insert(both.end(), upper.begin(), upper.end());
@@ -239,7 +239,7 @@ TEST_F(MapsSingleShadow, ObjectIdsNeedNoBiasAndLoseSelfShadows) {
   EXPECT_LT(lit_on_steps(shaded, "brabec-seidel:ids=off"), 0.8);
 }
 
-// A line of pixels whose border lies between two of them: shares are linear in the distance to its middle.
+// A line of pixels with the border between two of them: shares are linear in the distance to its middle.
 TEST(MapsFlood, ALineIsFilledAsFarAsThePenumbraReaches) {
   constexpr double kLight = 1, kHeight = 5, kBlocker = 2.5, kStep = 0.01;
   constexpr double kReach = kLight * (1 / kBlocker - 1 / kHeight);
@@ -248,9 +248,9 @@ TEST(MapsFlood, ALineIsFilledAsFarAsThePenumbraReaches) {
     using State = maps::FloodPixel::State;
     pixels[i] = {i < 60 ? State::lit : State::shaded, {kStep * static_cast<double>(i), 0}, kHeight, kBlocker};
   }
-  pixels[70].state = maps::FloodPixel::State::nothing;  // the flood does not cross background of one pixel's width
+  pixels[70].state = maps::FloodPixel::State::nothing;  // one background pixel stops the flood
   const maps::FloodResult found = maps::flood(pixels, 100, kLight);
-  EXPECT_EQ(found.passes, 20U);  // as far as 0.2, less half a pixel, on the lit side, and a last one that finds no more
+  EXPECT_EQ(found.passes, 20U);  // for 0.2 less half a pixel on the lit side, and a last pass that finds no more
   for (std::size_t i = 0; i < 70; ++i) {
     const double away = (59.5 - static_cast<double>(i)) * kStep / kReach;
     EXPECT_NEAR(found.share[i], std::clamp(0.5 + 0.5 * away, 0.0, 1.0), 1e-12) << i;
@@ -259,8 +259,8 @@ TEST(MapsFlood, ALineIsFilledAsFarAsThePenumbraReaches) {
   EXPECT_TRUE(maps::flood({}, 0, 1).share.empty());
 }
 
-// The outer penumbra under the half plane at height 2 is 0.4 wide on the floor, of whose texels (10 / 510 and more)
-// some 15 fit: a search of eight ends too early, and counters and the warning say so; one of sixty does not.
+// The outer penumbra under the half-plane at height 2 is 0.4 wide on the floor, about 15 texels (of 10 / 510 and more).
+// A search that is too short for that ends early, and counters and the warning say so; one of sixty does not.
 TEST_F(MapsSingleShadow, CutSearchesAreCounted) {
   const Stage stage = along_floor(half_plane(2, 0.3), places(), light_samples(1));
   for (const auto make : {maps::make_parker, maps::make_brabec_seidel}) {

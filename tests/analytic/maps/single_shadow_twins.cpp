@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The second maps of methods that make penumbrae of one hard shadow, and their searches, against twins that try every
-// edge at every texel, and every texel for every view sample.
+// Tests the second maps of methods that make penumbrae from one hard shadow, and their searches, against twins that try
+// every edge at every texel, and every texel for every view sample.
 
 #include "maps/products/light_shape.hpp"
 #include "maps/products/slices.hpp"
@@ -19,18 +19,18 @@ namespace {
 
 using selftest::CentreMaps;
 
-/// Edges of casters as the light's centre sees them, found by the sides on which their triangles lie; what is behind
-/// the light's plane is not asked here.
+/// A silhouette edge of casters as the light's centre sees it: an edge whose triangles lie more on one side than on the
+/// other. Casters behind the light's plane are not part of these tests.
 struct TwinEdge {
   glm::dvec3 a{0}, b{0};
-  glm::dvec2 outside{0};  ///< at right angles to the edge, in (x/z, y/z)
+  glm::dvec2 outside{0};  ///< direction away from the casters at right angles to the edge, in (x/z, y/z)
 };
 std::vector<TwinEdge> twin_edges(const Stage& stage, const maps::LightBasis& basis) {
   using Key = std::tuple<float, float, float>;
   const auto key = [](const glm::vec3& p) { return Key(p.x, p.y, p.z); };
   struct Sides {
     glm::dvec3 a{0}, b{0};
-    int left = 0;  ///< triangles on the left less those on the right
+    int left = 0;  ///< number of triangles on the left minus those on the right
   };
   std::map<std::pair<Key, Key>, Sides> edges;
   for (std::uint32_t i = 0; i < stage.floats.triangles.size(); ++i) {
@@ -56,7 +56,7 @@ std::vector<TwinEdge> twin_edges(const Stage& stage, const maps::LightBasis& bas
   return found;
 }
 
-/// The nearest of all triangles in a direction: z of the point where it is met; 0 if there is none.
+/// Returns z of the point where a ray in this direction meets the nearest triangle, or 0 if it meets none.
 double nearest_surface(const Stage& stage, const maps::LightBasis& basis, const glm::dvec2& seen) {
   double nearest = std::numeric_limits<double>::infinity();
   const glm::dvec3 direction(seen, 1);
@@ -75,7 +75,7 @@ double nearest_surface(const Stage& stage, const maps::LightBasis& basis, const 
   return std::isinf(nearest) ? 0 : nearest;
 }
 
-/// Trace of an edge in a texel: how far out it is and how high the edge, or nothing.
+/// The part of a penumbra in a texel: how far out the texel is, and the edge's height.
 struct Left {
   double kept, height;
 };
@@ -87,7 +87,7 @@ void each_part(const TwinEdge& edge, const glm::dvec2& outward, const glm::dvec2
   const double s = across(seen - a, outward) / across(b - a, outward),
                t = across(b - a, seen - a) / across(b - a, outward);
   if (s >= 0 && s <= 1 && t >= 0) keep(t, 1 / ((1 - s) / edge.a.z + s / edge.b.z));
-  // Keeps the part around an end, between `outward` and the continuation of the edge.
+  // Calls `keep` for the region around an end, between `outward` and the continuation of the edge.
   const auto around = [&](const glm::dvec2& end, const glm::dvec2& on, double height) {
     const double p = across(seen - end, on) / across(outward, on),
                  q = across(outward, seen - end) / across(outward, on);
@@ -97,7 +97,7 @@ void each_part(const TwinEdge& edge, const glm::dvec2& outward, const glm::dvec2
   around(b, along, edge.b.z);
 }
 
-/// A wall up to the light's plane makes a hemicube of the window.
+/// A scene with a wall up to the light's plane, which needs a hemicube instead of one window.
 scenes::Scene beside_a_wall() {
   scenes::Scene scene = bare_floor(0.4, 1.5);
   add_quad(scene, {-1.5, 2.5, 0}, {0, 0, 1.5}, {0, 2.5, 0}).casts_shadow = false;
@@ -128,7 +128,7 @@ class MapsOuterMap : public MapsTest {
       const glm::dvec3 local(glm::dot(direction, maps.basis.u), glm::dot(direction, maps.basis.v),
                              glm::dot(direction, maps.basis.n));
       const glm::dvec2 seen = glm::dvec2(local) / local.z;
-      // Returns the answer of a twin whose texel lies `off` beside this one.
+      // Returns the twin's result for a texel that is moved by `off`.
       const auto least = [&](const glm::dvec2& off) {
         Left left{1, std::numeric_limits<double>::infinity()};
         const double surface = nearest_surface(stage, maps.basis, seen + off);
@@ -165,7 +165,7 @@ class MapsOuterMap : public MapsTest {
                (std::isinf(with.height) ? std::isinf(height) : std::abs(height - with.height) < 1e-3);
       };
       if (agrees(expected)) continue;
-      // A texel's centre on a silhouette or on an outer border: corners are snapped to 1/256 texel.
+      // Corners are snapped to 1/256 texel: skips texels whose centre is on a silhouette or on an outer border.
       bool beside = false;
       const double d = (face.upper.x - face.lower.x) / kSize / 64 / std::max(local.z, 1e-3);
       for (const glm::dvec2& off : {glm::dvec2(d, 0), glm::dvec2(-d, 0), glm::dvec2(0, d), glm::dvec2(0, -d)}) {
@@ -230,7 +230,7 @@ TEST_F(MapsOuterMap, WidthsAreDistancesToTheNearestTexelWithoutAnOccluder) {
     commands.submit();
     std::vector<float> widths(maps.texel_count());
     product.buffer().read<float>(widths);
-    const std::vector<float> depths = maps.read();  // the floor casts nothing: all that casts occludes
+    const std::vector<float> depths = maps.read();  // the floor casts nothing, so every drawn texel is an occluder
     const auto& side = maps.fitted.views.front().side[0];
     const glm::dvec2 texel = glm::dvec2(side.upper - side.lower) / static_cast<double>(kSize);
     std::size_t inside = 0, unknown = 0;
@@ -258,7 +258,7 @@ TEST_F(MapsOuterMap, WidthsAreDistancesToTheNearestTexelWithoutAnOccluder) {
 
 TEST(MapsSearch, OffsetsAreAllOfADiskNearestFirst) {
   const std::vector<glm::ivec2> offsets = maps::search_offsets(140);
-  EXPECT_EQ(offsets.size(), 61529U);  // below 65,535 turns of a loop; Gauss's circle problem, N(140)
+  EXPECT_EQ(offsets.size(), 61529U);  // within 65,535 loop iterations; Gauss's circle problem, N(140)
   EXPECT_EQ(offsets.front(), glm::ivec2(0));
   for (std::size_t k = 1; k < offsets.size(); ++k) {
     EXPECT_GE(offsets[k].x * offsets[k].x + offsets[k].y * offsets[k].y,
@@ -266,7 +266,7 @@ TEST(MapsSearch, OffsetsAreAllOfADiskNearestFirst) {
   }
 }
 
-// Every texel is tried for every view sample: all casters are far above the floor, which casts nothing.
+// The twin tries every texel for every view sample: all casters are far above the floor, which casts nothing.
 class MapsSearchTwin : public MapsTest {};
 
 TEST_F(MapsSearchTwin, EveryTexelIsAskedThatCanMatter) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// occlusion-textures and convolution: slices against their twin, and what flat blockers parallel to the light must
-// give.
+// Tests occlusion-textures and convolution: slices against their twin, and results for flat blockers parallel to the
+// light, which are known.
 
 #include "maps/filters/methods.hpp"
 #include "maps/products/light_shape.hpp"
@@ -38,7 +38,7 @@ TEST_F(SliceProducts, MarkEverySurfaceInItsSlice) {
   }
 }
 
-// Closed, it has a top and a bottom; a sheet has one surface. Slices end at depths 2.25, 2.5, 2.75 and 3.
+// A closed body has a top and a bottom; a sheet has one surface. Slices end at depths 2.25, 2.5, 2.75 and 3.
 TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, 3}).casts_shadow = false;
@@ -51,7 +51,7 @@ TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
   constexpr std::uint32_t kSize = 64;
   const CentreMaps maps(device(), stage, kSize, {0, 0}, {.layers = 2});
   const auto& side = maps.fitted.views.front().side[0];
-  // The body's middle is seen at x/z = -1/2.5, the sheet's at 1.5/2.6.
+  // The body's middle appears at x/z = -1/2.5, the sheet's at 1.5/2.6.
   const auto words_of = [&](maps::DepthUse depth) {
     maps::Slices product(device(), {.count = 4, .depth = depth, .bias = 0.5});
     render::Commands commands(device());
@@ -60,7 +60,7 @@ TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
     std::vector<std::uint32_t> found(std::size_t{kSize} * kSize);
     product.buffer().read<std::uint32_t>(found);
     const auto at = [&](double tangent) {
-      // Direction along the basis' first axis, in whichever sense that runs.
+      // The direction is along the basis' first axis, whatever its sign.
       const glm::dvec3 d = glm::dvec3(tangent, -1, 0);
       const glm::dvec2 place =
           (glm::dvec2(glm::dot(d, maps.basis.u), glm::dot(d, maps.basis.v)) - glm::dvec2(side.lower)) /
@@ -75,8 +75,8 @@ TEST_F(SliceProducts, TheNearestSurfaceIsInTheSliceWhereItsShadowBegins) {
   EXPECT_EQ(words_of(maps::DepthUse::dual), std::pair(0b1001U, 0b100U));
 }
 
-// Texel by texel, in windows and hemicubes, with a bias of a slice's thickness and more: the nearest surface leaves its
-// slice unless another is in it, too, and is where its shadow begins.
+// Compares texel by texel, in windows and hemicubes, with a bias of a slice's thickness and more: the nearest surface
+// is removed from its slice, unless another surface is in that, too, and is added where its shadow begins.
 TEST_F(SliceProducts, MovedSurfacesAreTheirTwin) {
   constexpr std::uint32_t kSize = 48, kSlices = 31;
   constexpr double kBias = 3;
@@ -156,7 +156,7 @@ TEST_F(SliceProducts, OnePlaneIsTheBlockersMeanHeightWithoutTheGround) {
   EXPECT_NEAR(maps::slice_planes(its.set(lit), maps::SliceRule::one_plane, 1).plane[0][0], 3.75, 1e-6);
 }
 
-/// A board parallel to the light, as the light's box sees it from p: what share of it it hides.
+/// A board parallel to the light.
 struct Blocker {
   double height;
   glm::dvec2 lower, upper;  // in x and z
@@ -181,7 +181,7 @@ Stage floor_stage(const std::vector<Blocker>& boards, std::uint32_t n = 32) {
           grid_samples(n, {0, 0, 0}, {0.97, 0, 0}, {0, 0, 0.97}, {0, 1, 0})};
 }
 
-/// Part of the light that `board` hides from p on the floor, as intervals on the light.
+/// The part of the light that `board` hides from p on the floor, as intervals on the light.
 struct Shadow {
   glm::dvec2 lower, upper;  // on the light, −0.5 … 0.5
   [[nodiscard]] double share() const {
@@ -196,8 +196,8 @@ Shadow shadow_of(const Blocker& board, const glm::dvec3& p) {
   return {glm::clamp(on_light(board.lower), -0.5, 0.5), glm::clamp(on_light(board.upper), -0.5, 0.5)};
 }
 
-/// Returns the largest error of a share whose board's four edges are known to half a texel, and corners to 1/256: each
-/// edge moves by so much of the window's width, which is the light's.
+/// Returns the largest error of a share if the board's four edges are known to half a texel and corners to 1/256: each
+/// edge may move by this share of the window's width, which corresponds to the light's.
 double half_texels(const CentreMaps& maps, double height) {
   const auto& side = maps.fitted.views.front().side[0];
   const glm::dvec2 texel = glm::dvec2(side.upper - side.lower) / static_cast<double>(maps.size);
@@ -217,8 +217,8 @@ class SliceMethods : public MapsTest {
   }
 };
 
-// Eisemann and Décoret 2006, Soler and Sillion 1998: of one flat blocker parallel to the light the box filter is the
-// share of the light itself.
+// Eisemann and Décoret 2006, Soler and Sillion 1998: for one flat blocker parallel to the light the box filter gives
+// the exact share of the light.
 TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
   const Blocker board{2, {-0.3, -0.2}, {0.25, 0.4}};
   const Stage stage = floor_stage({board});
@@ -235,7 +235,7 @@ TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
     worst = std::max(worst, off);
     soft += exact > 0 && exact < 1 ? 1 : 0;
     EXPECT_LT(off, bound) << i;
-    // 1024 taps of the R2 sequence: log₂ n / n of the light for each of four edges.
+    // 1024 taps of the R2 sequence are off by log₂ n / n of the light at each of four edges.
     EXPECT_NEAR(taps.visibility[i], exact, bound + 4 * 10.0 / 1024) << i;
   }
   RecordProperty("worst", std::to_string(worst));
@@ -244,14 +244,16 @@ TEST_F(SliceMethods, OneFlatBlockerIsExactWithinHalfATexel) {
   EXPECT_GT(soft, 500U);
 }
 
-// Eisemann et al. 2009, section 5.2.5: slices are multiplied, whatever their shadows have in common: disjoint, half
-// over one another, nested.
+// Eisemann et al. 2009, section 5.2.5: slices are multiplied, however their shadows overlap: disjoint, half over one
+// another, or nested.
 TEST_F(SliceMethods, TwoBlockersAreMultipliedInEveryLayout) {
   const Blocker upper{2, {-0.2, -0.5}, {0.1, 0.5}};
   for (const double shift : {0.45, 0.15, 0.0}) {
-    // Nested or beside one another from the floor's middle: the lower one's shadow on the light is moved by `shift`.
+    // Seen from the floor's middle the boards are nested or side by side: `shift` moves the lower one's shadow on the
+    // light.
     const Blocker lower{1, {-0.1 + shift, -0.4}, {0.05 + shift, 0.4}};
-    // A speck far aside above both begins the slices, so that either board lies in the far plane of one: 2.25, 2, …, 1.
+    // A speck far aside, above both boards, starts the slices, so that each board is at the far end of one: 2.25, 2, …,
+    // 1.
     const Blocker speck{2.25, {-0.9, 0.9}, {-0.89, 0.91}};
     const Stage stage = floor_stage({upper, lower, speck});
     const CentreMaps maps(device(), stage, kSize, room_beside(stage));
@@ -261,7 +263,7 @@ TEST_F(SliceMethods, TwoBlockersAreMultipliedInEveryLayout) {
     std::size_t both = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       const glm::dvec3 p = world(stage, i);
-      if (p.x < -0.5 && p.z > 0.4) continue;  // the speck's own shadow
+      if (p.x < -0.5 && p.z > 0.4) continue;  // here is the speck's shadow
       const Shadow a = shadow_of(upper, p), b = shadow_of(lower, p);
       const Shadow common{glm::max(a.lower, b.lower), glm::min(a.upper, b.upper)};
       EXPECT_NEAR(found.visibility[i], (1 - a.share()) * (1 - b.share()), bound) << i;
@@ -280,8 +282,8 @@ double error_of(const Stage& stage, const Masks& found, const Masks& truth) {
   return rmse(stage, on_floor, [&](std::size_t i) { return found.visibility[i] - truth.visibility[i]; });
 }
 
-// Eisemann et al. 2009, section 5.2.5: right for flat blockers alone. The deeper a box reaches below its top, the
-// worse.
+// Eisemann et al. 2009, section 5.2.5: convolution is exact for flat blockers only. The deeper a box reaches below its
+// top, the larger the error.
 TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   double before = 0;
   for (const double depth : {0.01, 0.6, 1.2}) {
@@ -306,8 +308,8 @@ TEST_F(SliceMethods, ConvolutionFailsWithTheBlockersExtentInDepth) {
   }
 }
 
-// Eisemann et al. 2009, section 5.2.5: no shadow inside a slice. A box on a floor that casts, too: near its foot the
-// shadow is missing.
+// Eisemann et al. 2009, section 5.2.5: there is no shadow within a slice. For a box on a floor that casts, too, the
+// shadow near its foot is missing.
 TEST_F(SliceMethods, WithinASliceOfTheFloorTheShadowIsMissing) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {kFloor, 0, 0}, {0, 0, kFloor});

@@ -7,8 +7,8 @@
 namespace penumbra::tests {
 namespace {
 
-/// The floor, 8 wide, fills all but a texel on every side of the map of a light above its middle: 8 / (size − 2) there,
-/// and on the occluder 3/5 as far from the light, 3/5 of that.
+/// The floor, 8 wide, fills the map of a light above its middle except for one texel on every side: texels are 8 /
+/// (size − 2) wide on the floor, and 3/5 of that on the occluder, which is 3/5 as far from the light.
 TEST(TexelWidths, OfAWindowAreTheFloorsShare) {
   const Stage stage(parallel_square(), 24, 18);
   const ParallelSquare square(stage);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Support for tests of vssm: a scene, the method's options out of its twin's settings, the suite.
+// Support for tests of vssm: a scene, the method's options for its twin's settings, and the test suite.
 
 #include "tests/analytic/maps/vssm_twin.hpp"
 
@@ -13,7 +13,7 @@ namespace penumbra::tests {
 
 inline constexpr std::uint32_t kMapSize = 128;
 
-/// Returns the margin around the receivers that the methods ask their map to hold.
+/// Returns the margin around the receivers that the methods need in their map.
 inline glm::dvec2 beside(const Stage& stage) {
   return maps::half_extent(stage.light, maps::light_basis(stage.light)) / maps::half_width(stage.light);
 }
@@ -50,11 +50,11 @@ inline scenes::Scene scene_with(const decltype(scenes::AreaLight::shape)& shape)
   return scene;
 }
 
-/// A board parallel to the floor and to the light, as wide as a half-plane along z.
+/// A board parallel to the floor and the light that reaches beyond the floor along z.
 struct Strip {
   double height, x0, x1;
 };
-/// Returns a floor under boards.
+/// Returns a floor under these boards.
 inline scenes::Scene under_strips(const std::vector<Strip>& boards, double light = 0.5) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, 2});
@@ -67,7 +67,7 @@ inline scenes::Scene under_strips(const std::vector<Strip>& boards, double light
   return scene;
 }
 
-/// Returns the middle of such a floor, by 48 × 48 view samples.
+/// Returns 48 × 48 view samples around the middle of such a floor.
 inline Stage floor_stage(const std::vector<Strip>& boards, double light = 0.5) {
   return {under_strips(boards, light), 48, 48, light_samples(1),
           grid_samples(48, {0, 0, 0}, {1.2, 0, 0}, {0, 0, 1.2}, {0, 1, 0})};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// vssm in double, each mean a plain sum over the texels of its window: docs/vssm.md in a few lines. For maps of one
-// face.
+// vssm in double, with each mean a plain sum over the texels of its window: docs/vssm.md in a few lines. For maps of
+// one face.
 
 #include "maps/products/light_shape.hpp"
 #include "maps/products/map_frame.hpp"
@@ -39,8 +39,8 @@ class VssmTwin {
     double inside = 1;  ///< the share of the window that is in the map
   };
   struct Answer {
-    double v = 1, pcf = 1;     ///< V, and the share of the filter's window that is nearer by no more than rounding
-    bool no_blockers = false;  ///< the search says that nothing blocks
+    double v = 1, pcf = 1;     ///< V, and the share of the filter's window not nearer than the receiver (to rounding)
+    bool no_blockers = false;  ///< the search found that nothing blocks
     Box search, filter;
     double blocker = 0;  ///< the mean blocker's height
   };
@@ -102,7 +102,7 @@ class VssmTwin {
     return answer;
   }
 
-  /// Heights as the method counts them, 0 … 1.
+  /// Returns a height as the method counts heights, 0 … 1.
   [[nodiscard]] double normalised(double height) const {
     return std::clamp((height - low_end()) / (high_end() - low_end()), 0.0, 1.0);
   }
@@ -110,11 +110,11 @@ class VssmTwin {
  private:
   static constexpr double kNothing = 1e300, kLeastVariance = 0x1p-22;
   struct Lit {
-    double share = 1, blocked = 0;  ///< the mean of what is not lit, times its share
+    double share = 1, blocked = 0;  ///< the mean height of what is not lit, times its share
   };
   struct Asking {
     glm::dvec3 d, m;
-    double kept = 1, biased = 0, exact = 0, slack = 0;  ///< the receiver's height with the bias and as it is asked
+    double kept = 1, biased = 0, exact = 0, slack = 0;  ///< the receiver's height with the bias, and as it is compared
   };
 
   [[nodiscard]] double low_end() const { return nearest_ * (1 - 1.0 / 1024); }
@@ -126,7 +126,7 @@ class VssmTwin {
     return static_cast<double>(std::ranges::count_if(pattern, above)) / 64;
   }
 
-  /// Windows as they are wanted; `inside` is theirs once they are clipped.
+  /// Windows before they are clipped to the map; clipping sets `inside`.
   [[nodiscard]] Box box_through(const glm::dvec3& d, double z) const {
     const glm::dvec2 at = (glm::dvec2(d) / d.z - lower_) / texel_,
                      width = 2.0 * half_ * std::max(1 / z - 1 / d.z, 0.0) / texel_;
@@ -148,7 +148,8 @@ class VssmTwin {
     return box;
   }
 
-  /// The receiver's plane in the direction of a place of the map, less the bias; no deeper than the receiver.
+  /// Returns the receiver's plane in the direction of a place on the map, less the bias, but no deeper than the
+  /// receiver.
   [[nodiscard]] double plane_height(const Asking& asking, const glm::dvec2& place) const {
     const glm::dvec3 direction(lower_ + place * texel_, 1);
     const double facing = glm::dot(asking.m, direction), h = glm::dot(asking.m, asking.d);
@@ -156,7 +157,7 @@ class VssmTwin {
     return normalised(asking.kept * h / facing);
   }
 
-  /// The window, or what it is cut into: parts whose bound says something by their bound, the others at some texels.
+  /// Returns V of the window, or of its parts: parts whose bound is below 1 by that bound, the others by some texels.
   [[nodiscard]] Lit of_parts(const Box& window, const Asking& asking, std::uint32_t cut = 0) const {
     const Box box = clipped(window);
     const glm::dvec2 extent = window.upper - window.lower;
@@ -211,7 +212,7 @@ class VssmTwin {
     return box.inside * sum / (extent.x * extent.y) + (1 - box.inside) * f(1);
   }
 
-  /// Returns the mean over all texels that the box touches, or 16 along an axis; whole texels.
+  /// Returns the mean over all whole texels that the box touches, at most 16 along an axis.
   [[nodiscard]] double texel_by_texel(const Box& box, const std::function<double(double)>& f) const {
     if (box.inside == 0) return 1;
     const glm::dvec2 first = glm::floor(box.lower), extent = glm::ceil(box.upper) - first,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what each kind of moments promises of a window, cut or whole, and of a fixed one.
+// Tests the properties of each kind of moments for a window, cut into parts or whole, and for a fixed window.
 
 #include "maps/filters/methods.hpp"
 
@@ -40,9 +40,9 @@ TEST_F(Vssm, MoreTermsOfTheSeriesComeCloserToCounting) {
   EXPECT_LT(last, 0.07);
 }
 
-// The nearest caster's shadow on the deepest receiver: their heights are as far apart as heights are, and the series
-// must not have jumped back there. The series swings: beyond its first maximum a sum of sines is never further below a
-// step of 1 than 1/2 - Si(2 pi) / pi = 0.0486 (Gibbs). 0.37 would be left if heights spanned all of half a period.
+// The nearest caster's shadow on the deepest receiver: their heights are as far apart as possible, and the series must
+// not have jumped back there. The series oscillates: beyond its first maximum a sum of sines is never farther below a
+// step of 1 than 1/2 - Si(2 pi) / pi = 0.0486 (Gibbs). It would be 0.37 if heights spanned all of half a period.
 TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   for (const std::uint32_t terms : {1U, 2U, 4U, 16U}) {
@@ -50,7 +50,8 @@ TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
     const Masks found = run(maps::make_vssm, stage, options_of(settings));
     std::size_t umbra = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      // The board is half way to the light, whose half is 0.5: the umbra ends at 2 * 0.1 - 0.5; a texel is 0.05 wide.
+      // The board is half way to the light, whose half-size is 0.5: the umbra ends at 2 * 0.1 - 0.5. A texel is 0.05
+      // wide.
       if (stage.samples.p[i].x + stage.floats.origin.x > -0.4) continue;
       ++umbra;
       EXPECT_LT(found.visibility[i], 0.0486 + 0x1p-10) << terms << " terms";
@@ -59,8 +60,8 @@ TEST_F(Vssm, TheSeriesEndsBeforeItJumpsBack) {
   }
 }
 
-// The series is exactly a half at a plane's own height (S4, figure 4.8), unless its scale makes that 1 in a filter of
-// texels, or its scale or its offset tells a light's search that nothing blocks.
+// At a plane's own height the series is exactly 1/2 (Eisemann et al. 2009, figure 4.8), unless its scale makes that 1
+// in a filter of a fixed window, or its scale or offset makes the search find no blocker.
 TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   struct Series {
@@ -70,7 +71,7 @@ TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   for (const Series& series : {Series{1, 0, 0.5, 0}, Series{2, 0, 1, 0}, Series{1, 1, 1, 0}, Series{1, 0, 0.5, 3},
                                Series{1.5, 0, 0.75, 3}, Series{2, 0, 1, 3}, Series{1, 1, 1, 3}}) {
     for (const std::uint32_t terms : {1U, 4U, 16U}) {
-      if (terms == 1 && series.offset > 0) continue;  // its span is cut off
+      if (terms == 1 && series.offset > 0) continue;  // one term cuts off its span
       const VssmSettings settings{.moments = "csm",
                                   .count = terms,
                                   .scale = series.scale,
@@ -81,11 +82,11 @@ TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
       const Masks found = run(maps::make_vssm, stage, options_of(settings));
       std::size_t plane = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        // Lit whole, with nothing nearer than the floor in the search's window either.
+        // Fully lit, with nothing nearer than the floor in the search's window either.
         const double x = stage.samples.p[i].x + stage.floats.origin.x;
         if (x < 1.0) continue;
         ++plane;
-        // 12 digits, and the sum of 2 / c_k over the terms: below 2.
+        // The functions have 12 digits; the sum of 2 / c_k over the terms is below 2.
         EXPECT_NEAR(found.visibility[i], series.v, series.scale * 0x1p-10) << terms << " terms, scale " << series.scale;
       }
       EXPECT_GT(plane, 100U);
@@ -93,8 +94,8 @@ TEST_F(Vssm, ALitPlaneIsHalfDarkUntilTheSeriesIsScaledOrShifted) {
   }
 }
 
-// The mean of a window lies behind a board in the air that looks past other boards down to the floor, and the bound is
-// 1 whatever stands before. Cut into parts (Yang et al. 2010) the answer is nearly that of counting the same texels.
+// A board in the air looks past other boards down to the floor: the mean depth of its window is behind it, so the bound
+// is 1 whatever is in front. Cut into parts (Yang et al. 2010), the result is nearly that of counting the same texels.
 TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2});
@@ -111,7 +112,8 @@ TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
     double sum = 0;
     std::size_t lit = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      // Each bar hides so much of the light: from p the light is 1.2 wide at 2 above it, the bars 0.6 of 2.
+      // The light hidden by each bar: seen from p, the light is 1.2 wide at 2 above p, and the bars are at 0.6 of these
+      // 2.
       const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
       double hidden = 0;
       for (const double x : {-0.3, 0.3}) {
@@ -131,9 +133,9 @@ TEST_F(Vssm, PartsSeeWhatBlocksBeforeADeepFloor) {
   EXPECT_LT(adaptive, 0.7 * none);
 }
 
-// The bound of the rising exponential for two depths, the share f of them at the receiver's, is f, too, wherever their
-// variance is not below the least one, L = (c b)^2, which the bias b stands for; elsewhere no more than L / (1 - f)^2
-// above it. (A bias of the receiver's height would multiply the lit part by exp(c b).)
+// For two depths, a share f of which is at the receiver's, the bound of the rising exponential is f, too, if their
+// variance is not below the least variance L = (c b)^2, which stands for the bias b; otherwise it is at most L / (1 -
+// f)^2 above f. (A bias of the receiver's height would multiply the lit part by exp(c b).)
 TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   const CentreMaps maps(device(), stage, 256, beside(stage));
@@ -141,8 +143,8 @@ TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
     const VssmSettings settings{.moments = "evsm", .exponent = 80, .bias = bias};
     const Masks found = run(maps::make_vssm, stage, options_of(settings, 256));
     const VssmTwin twin(maps, stage, settings);
-    // Heights run from 2 to 4: b is half of bias texels of depth 4 on a level floor; half a texel less of the window's
-    // frame.
+    // Heights run from 2 to 4: on a level floor b is half of `bias` texels at depth 4 (half a texel less for the
+    // window's frame).
     const auto view = maps.fitted.views.front().side[0];
     const double texel = static_cast<double>(view.upper.x - view.lower.x) / 256, b = bias * texel * 4 / 2;
     const double least = std::max(std::pow(40 * b, 2), 1600 * 0x1p-22) * 1.01;
@@ -159,8 +161,8 @@ TEST_F(Vssm, OfTwoDepthsTheBoundOfExponentialsIsTheShare) {
   }
 }
 
-// V of a level floor is the same whether the floor is drawn in the map or not: nothing there is nearer. (Texels without
-// a caster lay 1/1024 of the depth behind it, which exp(80 t) counted as 1.17 times lit.)
+// V on a level floor does not depend on whether the floor is drawn in the map: nothing there is nearer. (Texels without
+// a caster once lay 1/1024 of the depth behind the floor, which exp(80 t) counted as 1.17 times lit.)
 TEST_F(Vssm, AFloorThatCastsNothingIsNoBrighter) {
   const auto with = [&](bool casts, const VssmSettings& settings) {
     scenes::Scene scene = under_strips(std::vector<Strip>{{2, -0.7, 0.1}});
@@ -174,17 +176,17 @@ TEST_F(Vssm, AFloorThatCastsNothingIsNoBrighter) {
                                        {.moments = "evsm"},
                                        {.moments = "vsm"}}) {
     const std::vector<float> drawn = with(true, settings), empty = with(false, settings);
-    // Heights are rounded to 2^-22 of their range, exponentials of them to 80 times that.
+    // Heights are rounded to 2^-22 of their range, and their exponentials to 80 times that.
     for (std::size_t i = 0; i < drawn.size(); ++i)
       EXPECT_NEAR(drawn[i], empty[i], 1e-4) << settings.moments << " " << i;
     EXPECT_GT(std::ranges::count_if(drawn, [](float v) { return v > 0.1F && v < 0.9F; }), 300) << settings.moments;
   }
 }
 
-// Moments as filters of a fixed window stand for pcf (S4, chapter 4). Bounds and exponentials of two depths are the
-// count, except for the least variance L: no more than L / (1 - f)^2 above it, 1 - f a 49th or more. L of vsm is 2^-22,
-// of four layers 16 times that, of evsm (40 b)^2 with b a twentieth of a texel's depth, 1.3e-4 of the range. The series
-// swings.
+// With a fixed window, moments approximate pcf (Eisemann et al. 2009, chapter 4). For two depths bounds and
+// exponentials equal the count, except for the least variance L: they are at most L / (1 - f)^2 above it, where 1 - f
+// is at least a 49th. L is 2^-22 for vsm, 16 times that for four layers, and (40 b)^2 for evsm, with b a twentieth of a
+// texel's depth, 1.3e-4 of the range. The series oscillates.
 TEST_F(Vssm, AFilterOfTexelsIsPcf) {
   const Stage stage = floor_stage({{2, -4, 0.1}});
   const Masks counted = run(maps::make_pcf, stage, {{"size", "128"}, {"window", "7"}});
@@ -193,7 +195,8 @@ TEST_F(Vssm, AFilterOfTexelsIsPcf) {
     const char *moments, *bias;
     double bound;
   };
-  // A bias brings the receiver nearer to the mean, by which a bound grows: none where the bound is derived without one.
+  // A bias moves the receiver toward the mean, which increases a bound: it is 0 where the tolerance is derived without
+  // one.
   for (const auto& [moments, bias, bound] :
        {Claim{"vsm", "0", 1e-3}, Claim{"lvsm", "0", 1e-2}, Claim{"evsm", "0.1", 0.08}, Claim{"esm", "0.1", 1e-3},
         Claim{"csm", "0.1", 0.1}}) {
@@ -207,8 +210,8 @@ TEST_F(Vssm, AFilterOfTexelsIsPcf) {
   }
 }
 
-// Annen, Mertens et al. 2008, section 3.4: the conservative classifier compares all texels of windows that hold one
-// behind the receiver, so V is never above what it is where the exponential's mean decides.
+// Annen, Mertens et al. 2008, section 3.4: the conservative classifier compares all texels of windows that hold a texel
+// behind the receiver, so that V is never above what the exponential's mean gives.
 TEST_F(Vssm, TheConservativeClassifierFindsMoreThanTheMean) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.4}}), 32, 32, light_samples(1));
   const auto with = [&](const char* classifier) {
@@ -218,14 +221,14 @@ TEST_F(Vssm, TheConservativeClassifierFindsMoreThanTheMean) {
   std::size_t darker = 0, brighter = 0;
   for (std::size_t i = 0; i < mean.size(); ++i) {
     darker += farthest[i] < mean[i] - 0.01F ? 1 : 0;
-    brighter += farthest[i] > mean[i] + 0.1F ? 1 : 0;  // by another mean blocker
+    brighter += farthest[i] > mean[i] + 0.1F ? 1 : 0;  // due to another mean blocker
   }
   EXPECT_GT(darker, 0U);
   EXPECT_EQ(brighter, 0U);
 }
 
-// Lauritzen 2007: on a plane that rises so much a texel the square of each texel has a quarter of the square more, so
-// that the bound of a plane that shades itself is larger.
+// Lauritzen 2007: on a sloped plane a quarter of the square of the depth change per texel is added to each texel's
+// squared depth, so that the bound of a plane that shades itself is larger.
 TEST_F(Vssm, TheSlopeOfATexelWidensTheBound) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 1, 0}, {0, 0, -2});
@@ -242,10 +245,11 @@ TEST_F(Vssm, TheSlopeOfATexelWidensTheBound) {
                 {"slope", slope}})
         .visibility;
   };
-  // A window of one texel: a receiver at the share x of the texel's height change behind its centre has V = 1/4 / (1/4
-  // + x²), x up to 1/2: no less than a half. Without slope V is 0 there, except for the least variance.
+  // A window of one texel: a receiver that is behind the texel's centre by a share x of the texel's depth change has V
+  // = 1/4 / (1/4 + x²), at least 1/2 because x is at most 1/2. Without the slope V is 0 there, except for the least
+  // variance.
   const std::vector<float> with_slope = with("on"), without = with("off");
-  std::size_t dark = 0, still_dark = 0;  // these at the plane's border
+  std::size_t dark = 0, still_dark = 0;  // still_dark: at the plane's border
   for (std::size_t i = 0; i < without.size(); ++i) {
     if (!visibility::is_receiver(stage.floats, stage.light, stage.samples, i)) continue;
     dark += without[i] < 0.3F ? 1 : 0;
@@ -255,8 +259,8 @@ TEST_F(Vssm, TheSlopeOfATexelWidensTheBound) {
   EXPECT_LT(still_dark, dark / 20);
 }
 
-// Eisemann et al. 2009, section 4.2.4: a texel behind the receiver makes the exponential more than 1. There are none
-// over a level floor, and there are on a tilted one and where a caster's outline lets the floor behind it be seen.
+// Eisemann et al. 2009, section 4.2.4: a texel behind the receiver makes the exponential more than 1. Over a level
+// floor there are none; on a tilted one there are some, and also where the floor is visible past a caster's outline.
 TEST_F(Vssm, TheExponentialFailsWhereTexelsLieBehindTheReceiver) {
   const auto differing = [](const Stage& stage) {
     const VssmSettings with{.moments = "esm"}, without{.moments = "esm", .fallback = false};
@@ -264,7 +268,7 @@ TEST_F(Vssm, TheExponentialFailsWhereTexelsLieBehindTheReceiver) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < a.visibility.size(); ++i) {
       count += std::abs(a.visibility[i] - b.visibility[i]) > 1e-3F ? 1 : 0;
-      EXPECT_LE(a.visibility[i], b.visibility[i] + 1e-3F);  // without it, V is 1 there
+      EXPECT_LE(a.visibility[i], b.visibility[i] + 1e-3F);  // without the fallback V is 1 there
     }
     return static_cast<double>(count) / static_cast<double>(a.visibility.size());
   };
@@ -275,7 +279,7 @@ TEST_F(Vssm, TheExponentialFailsWhereTexelsLieBehindTheReceiver) {
   EXPECT_GT(solid, 0.01);
 }
 
-// A light without size has windows of one texel, the receiver's own.
+// For a light without size each window is one texel, the receiver's own.
 TEST_F(Vssm, APointLightIsTheShadowMap) {
   scenes::Scene scene = under_strips({{2, -0.7, 0.1}}, 1e-6);
   const Stage stage(scene, 64, 64, light_samples(1), grid_samples(64, {0, 0, 0}, {1.9, 0, 0}, {0, 0, 1.9}, {0, 1, 0}));
@@ -285,7 +289,7 @@ TEST_F(Vssm, APointLightIsTheShadowMap) {
       const Masks found = run(maps::make_vssm, stage, {{"size", "128"}, {"moments", moments}, {"filter", filter}});
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         // The board is half of the range of heights away: the least variance, 2⁻²² of the warped range, leaves less
-        // than 2⁻²⁰ of light in front of (16 layers' or 40 e-folds') Δ² ≥ 1/4.
+        // than 2⁻²⁰ of the light, because Δ² ≥ 1/4 (with 16 layers or 40 e-folds).
         EXPECT_NEAR(found.visibility[i], hard.visibility[i], 1e-4) << moments << " " << filter << " at " << i;
       }
     }
@@ -294,7 +298,7 @@ TEST_F(Vssm, APointLightIsTheShadowMap) {
   EXPECT_EQ(taps.visibility, hard.visibility);
 }
 
-// The other filters are approximations of the same means.
+// The other filters approximate the same means.
 TEST_F(Vssm, PyramidsAndWindowsComeNearTheTables) {
   const Stage stage(scene_with(scenes::Rectangle{{0, 4, 0}, {0.6, 0, 0}, {0, 0, 0.3}}), 48, 48, light_samples(1));
   for (const char* moments : {"vsm", "lvsm", "evsm", "csm", "esm"}) {

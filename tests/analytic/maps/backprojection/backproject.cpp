@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Backprojection against every texel one by one, against closed forms, and the identities that hold on every scene.
+// Tests backprojection against a sum over all texels, against closed forms, and by identities that hold on every scene.
 
 #include "tests/analytic/maps/parallel_square.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
@@ -34,7 +34,7 @@ scenes::Scene boards_over_floor() {
   return scene;
 }
 
-/// A small floor, and a caster that shades it from far beside every direction that the floor is seen in.
+/// A small floor, and a caster that shades it although it stands far outside all directions in which the floor is seen.
 scenes::Scene blocker_beside() {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {0.2, 0, 0}, {0, 0, -0.2}).casts_shadow = false;
@@ -58,7 +58,7 @@ scenes::Scene boards_in_a_room() {
   return scene;
 }
 
-/// A tilted floor that casts, too: all that most of its kernels hold is itself.
+/// A tilted floor that casts, too: most of its kernels hold only the floor itself.
 scenes::Scene board_over_a_slope() {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 1.2, 0}, {0, 0, -2});
@@ -93,7 +93,7 @@ class MapsBackproject : public MapsTest {
   }
 };
 
-// Borders are floats around 1 in light coordinates, each off by some 2⁻²⁰ where f magnifies by ten; only outer borders
+// Borders are floats around 1 in light coordinates, each off by about 2⁻²⁰ where f magnifies by ten. Only outer borders
 // of what hides the light count, about a hundred of them here: 1e-4. A kernel that misses a texel, or a constant that
 // is 2 % off, moves V by far more.
 TEST_F(MapsBackproject, IsTheSumOfAllTexelsOneByOne) {
@@ -110,8 +110,8 @@ TEST_F(MapsBackproject, IsTheSumOfAllTexelsOneByOne) {
   }
 }
 
-// Sides of texels on sideways faces stand where the middle of the texel's row sees them: exact in the mean of a row, so
-// that only corners of the outline remain, each a fraction of a texel's square.
+// On sideways faces the sides of a texel are placed where they are seen from the middle of its row. Over a row this is
+// exact on average, so that only corners of the outline are wrong, each by a fraction of a texel's square.
 TEST_F(MapsBackproject, AHemicubesFacesTooToASquareTexel) {
   const Stage stage(boards_in_a_room(), 24, 24, light_samples(1));
   const PatchTwin twin(device(), stage, 48);
@@ -123,7 +123,8 @@ TEST_F(MapsBackproject, AHemicubesFacesTooToASquareTexel) {
   EXPECT_LT(mean, 0.0001);
 }
 
-// A coarse level is a map of the blocks' nearest depths (Guennebaud et al. 2007), also where blocks reach over its end.
+// A coarse level is a map of its blocks' nearest depths (Guennebaud et al. 2007), also for blocks that reach beyond the
+// map's end.
 TEST_F(MapsBackproject, ALevelIsTheSumOfItsBlocks) {
   const Stage stage(boards_over_floor(), 20, 20, light_samples(1));
   for (const auto& [size, level] : {std::pair(64U, 1U), std::pair(75U, 2U)}) {
@@ -136,8 +137,8 @@ TEST_F(MapsBackproject, ALevelIsTheSumOfItsBlocks) {
   }
 }
 
-// Blocks are nearer than the texels that a search asks for, most of all on what is curved: a search at a level must not
-// leave one out, nor take what texels hide for what blocks do.
+// Blocks are nearer than the texels that a search reads, most of all on curved surfaces: a search at a coarse level
+// must leave out no block, and must not take what texels hide for what blocks hide.
 TEST_F(MapsBackproject, NoSearchChangesALevel) {
   const Stage stage(ball_over_floor(1), 20, 20, light_samples(8));
   std::size_t partly = 0;
@@ -159,8 +160,7 @@ TEST_F(MapsBackproject, NoSearchChangesALevel) {
   EXPECT_GT(partly, 400U);
 }
 
-// Each pixel with a budget looks at one level, or at two levels of which the coarser counts for a part (Guennebaud et
-// al. 2007).
+// With a budget, each pixel looks at one level, or at two levels blended with weights (Guennebaud et al. 2007).
 TEST_F(MapsBackproject, ABudgetChoosesLevelsAndBlendsThem) {
   const Stage stage(boards_over_floor(), 24, 24, light_samples(1));
   for (const char* form : {"patch", "sphere"}) {
@@ -183,7 +183,7 @@ TEST_F(MapsBackproject, ABudgetChoosesLevelsAndBlendsThem) {
           one = one || stepped[i] == levels[l][i];
           coarse += l > 0 && stepped[i] == levels[l][i] && stepped[i] != levels[0][i] ? 1 : 0;
           if (l == 0) continue;
-          // Each part is rounded once a texel, to 2^-30 of the light and a float's 2^-24 of what it hides.
+          // Each part is rounded once per texel, to 2^-30 of the light and to a float's 2^-24 of what it hides.
           const float low = std::min(levels[l - 1][i], levels[l][i]), high = std::max(levels[l - 1][i], levels[l][i]);
           two = two || (blended[i] >= low - 1e-6F && blended[i] <= high + 1e-6F);
           between += blended[i] > low + 1e-3F && blended[i] < high - 1e-3F ? 1 : 0;
@@ -209,7 +209,8 @@ TEST_F(MapsBackproject, BothSidesOfATwoSidedLight) {
   EXPECT_LT(off(stage, twin, 32, Fill::edges).first, 1e-4);
 }
 
-// A search finds narrower kernels, never others; and where the whole kernel hides, all of the light is hidden.
+// A search finds narrower kernels but changes no result, except that where the whole kernel hides, all of the light is
+// hidden.
 TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
   for (const auto& [scene, fill] : {std::pair(boards_over_floor(), "none"), std::pair(boards_in_a_room(), "edges"),
                                     std::pair(parallel_square(), "none"), std::pair(board_over_a_slope(), "edges")}) {
@@ -218,7 +219,8 @@ TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
     for (const char* search : {"hsm", "mssm", "ysm"}) {
       const Masks found = run(maps::make_backproject, stage, options_of({{"fill", fill}, {"search", search}}, 48));
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        // A pixel that all texels hide is nearly dark without the search, except for the gaps between texels.
+        // Without the search, a pixel that all texels hide is nearly dark, except for light through gaps between
+        // texels.
         EXPECT_TRUE(found.visibility[i] == plain.visibility[i] ||
                     (found.visibility[i] == 0 && plain.visibility[i] < 0.5F))
             << search << ", pixel " << i << ": " << found.visibility[i] << " for " << plain.visibility[i];
@@ -227,12 +229,12 @@ TEST_F(MapsBackproject, SearchesChangeNothingButPatchesThatCoverTheKernel) {
   }
 }
 
-// Parallel rectangles lose nothing except half a texel at each of an axis's two edges, f / w_l texels on the light.
+// Parallel rectangles are exact except for half a texel at each of an axis's two edges, f / w_l texels on the light.
 TEST_F(MapsBackproject, IsWithinATexelOfTheAreaUnderAParallelSquare) {
   for (const std::uint32_t size : {16U, 31U, 33U, 128U}) {
     const Stage stage(parallel_square(), 32, 32, light_samples(1));
     const ParallelSquare exact(stage);
-    // Light at 5, square at depth 3: f = 3 · 5 / (5 − 3); the light is 2 wide; the window ±(0.8 + a texel).
+    // The light is at 5 and 2 wide, the square at depth 3: f = 3 · 5 / (5 − 3). The window is ±(0.8 + one texel).
     const double texel = 1.6 / (size - 2), bound = 2 * texel * 7.5 / 2;
     for (const char* search : {"none", "hsm"}) {
       const Masks found = run(maps::make_backproject, stage, options_of({{"search", search}}, size));
@@ -259,7 +261,7 @@ TEST_F(MapsBackproject, UmbraAndFullLightAreExact) {
       std::size_t lit = 0, dark = 0;
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
         if (!exact.on_floor(i)) continue;
-        // The umbra is ±1 …, the light is whole beyond ±2.33; a texel is 0.13 wide on the floor.
+        // The umbra is |x| < 1, full light is beyond 2.33; a texel is 0.13 wide on the floor.
         const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
         if (std::max(std::abs(p.x), std::abs(p.z)) < 1 - 0.2) {
           EXPECT_EQ(found.visibility[i], 0);
@@ -275,7 +277,8 @@ TEST_F(MapsBackproject, UmbraAndFullLightAreExact) {
   }
 }
 
-// The bias says what hides, not where: casters well above the floor hide the same under any of these.
+// The bias decides which texels hide light, not where: casters well above the floor hide the same with any of these
+// values.
 TEST_F(MapsBackproject, TheBiasMovesNothing) {
   const Stage stage(boards_over_floor(), 20, 20, light_samples(1));
   const Masks none = run(maps::make_backproject, stage, options_of({{"bias", "0"}}));
@@ -296,8 +299,8 @@ TEST_F(MapsBackproject, ALightWithoutExtentGivesTheShadowMap) {
       different += found.visibility[i] != hard.visibility[i] ? 1 : 0;
       shaded += hard.visibility[i] == 0 ? 1 : 0;
     }
-    // The windows differ by what stands beside the floor's directions: nothing here. A light of 1e-6 · f = 1e-5 meets a
-    // texel's border, of which there are 64 across the picture, for about 64 · 40 · 1e-5 pixels.
+    // The two windows could differ only by casters beside the floor's directions, and there are none. A light of 1e-6 ·
+    // f = 1e-5 meets the border of a texel, of which there are 64 across the picture, at about 64 · 40 · 1e-5 pixels.
     EXPECT_EQ(different, 0U) << fill;
     EXPECT_GT(shaded, 100U);
   }

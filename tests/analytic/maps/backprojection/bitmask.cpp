@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bitmasks of one map: each bit against the occluders one by one, and what must hold between occluders, levels, layers
-// and sums, on every scene or on every scene of a class.
+// Tests bitmask with one map: each bit against the occluders one by one, and relations between occluders, levels,
+// layers and sums that hold on every scene or on every scene of a class.
 
 #include "maps/backprojection/level_maps.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -26,7 +26,7 @@ class MapsBitmask : public MapsTest {
   static bool receives(const Stage& stage, std::size_t i) {
     return visibility::is_receiver(stage.floats, stage.light, stage.samples, i);
   }
-  /// All that is hidden in `less` is hidden in `more`.
+  /// Whether everything that `less` hides is hidden in `more` too.
   static testing::AssertionResult hides_no_less(const Masks& more, const Masks& less) {
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < more.words.size(); ++i) wrong += (more.words[i] & ~less.words[i]) != 0 ? 1 : 0;
@@ -34,7 +34,7 @@ class MapsBitmask : public MapsTest {
     return testing::AssertionFailure() << wrong << " words";
   }
 
-  /// Every bit must be what the polygons say, except for samples within `margin` of one's border.
+  /// Expects every bit to agree with the polygons, except for samples within `margin` of a polygon's border.
   static void expect_bits(const scenes::Scene& scene, const visibility::SampleRequest& request, Occluder kind,
                           const char* name, bool by_hand = true) {
     constexpr double kMargin = 2e-5;
@@ -76,7 +76,7 @@ TEST_F(MapsBitmask, EachBitIsWhatTheOccludersSay) {
   }
 }
 
-// Quads and triangles are facets between points of the surface, in every face of a hemicube.
+// Quads and triangles are facets between points of the surface. Here they are tested in every face of a hemicube.
 TEST_F(MapsBitmask, QuadsInAHemicube) {
   scenes::Scene scene = bare_floor(0.5, 1.5);
   add_quad(scene, {-1.5, 2.5, 0}, {0, 0, 1.5}, {0, 2.5, 0}).casts_shadow = false;  // a wall up to the light's plane
@@ -101,8 +101,9 @@ TEST_F(MapsBitmask, TrianglesHideAllThatQuadsDoAndLayersAllThatFewerDo) {
   }
 }
 
-// Facets between points of a convex body lie in it: what they hide is hidden. The rasteriser may move its corners by up
-// to 1/256 texel, here 2.1 · 3 / 48 / 256 = 5e-4 at the body's depth: bits are judged with a body that is 1/500 larger.
+// Facets between points of a convex body lie inside it: what they hide is hidden. The rasteriser may move the body's
+// corners by up to 1/256 texel, here 2.1 · 3 / 48 / 256 = 5e-4 at the body's depth: bits are compared with a body that
+// is 1/500 larger.
 TEST_F(MapsBitmask, NothingVisibleIsHiddenByQuadsAndTrianglesOfAConvexBody) {
   for (const double light : {0.3, 1.0}) {
     const Stage stage = on_floor(sphere_over_floor(light), 16, light_samples(64)),
@@ -134,8 +135,8 @@ TEST_F(MapsBitmask, NothingVisibleIsHiddenByQuadsAndTrianglesOfAConvexBody) {
   }
 }
 
-// The union of patches is no more than their sum. Of 16 × 16 samples each edge of a patch may take a whole row or
-// column, 1/16; patches of one surface share their edges, and its outline has two along each axis.
+// The union of patches is no more than their sum. With 16 × 16 samples each edge of a patch may gain a whole row or
+// column, 1/16; patches of one surface share their edges, and its outline has two edges along each axis.
 TEST_F(MapsBitmask, AUnionOfPatchesIsNoMoreThanTheirSum) {
   for (const scenes::Scene& scene :
        {sphere_over_floor(), square_above_plate(), oblique_quad(0.4), box_over_floor(0.5)}) {
@@ -167,7 +168,7 @@ TEST_F(MapsBitmask, ASearchChangesNoBit) {
   }
 }
 
-// Two scenes with one map have one image: the light's centre cannot tell them apart.
+// Two scenes with the same map have the same image: the light's centre cannot tell them apart.
 TEST_F(MapsBitmask, OneMapOneImage) {
   const Stage gap = on_floor(plates_with_gap(true), 16, light_samples(64)),
               whole = on_floor(plates_with_gap(false), 16, light_samples(64));
@@ -195,7 +196,8 @@ TEST_F(MapsBitmask, UmbraAndFullLightAreExactAndLevelsFinite) {
       levels.insert(found.visibility[i]);
       EXPECT_EQ(found.visibility[i] * 64, std::round(found.visibility[i] * 64));
       if (!exact.on_floor(i)) continue;
-      // A texel is 0.087 wide on the floor; quads lose half a texel of the square on each side, 2.5 times that there.
+      // A texel is 0.087 wide on the floor; quads lose half a texel of the square on each side, which is 2.5 times as
+      // wide on the floor.
       const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
       const double off = std::max(std::abs(p.x), std::abs(p.z));
       if (off < 1 - 0.25) {
@@ -227,8 +229,8 @@ double bias_of(const Stage& stage, const Masks& found) {
   return sum / static_cast<double>(count);
 }
 
-// A bar that is less than a texel wide has no four centres next to each other: quads and triangles lose it; patches are
-// a texel wide, and on average that is right. The window holds ±1.2 / 5 in 46 texels: 0.0104, 0.0261 at the bars'
+// A bar that is less than a texel wide has no four centres next to each other: quads and triangles lose it. Patches are
+// a texel wide, which is right on average. The window holds ±1.2 / 5 in 46 texels: 0.0104 each, 0.0261 at the bars'
 // depth.
 TEST_F(MapsBitmask, BarsThinnerThanATexelAreLostToQuadsAndNotToPatches) {
   const Stage thin = on_floor(bars(0.02), 16, light_samples(64)), wide = on_floor(bars(0.12), 16, light_samples(64));
@@ -245,7 +247,7 @@ TEST_F(MapsBitmask, BarsThinnerThanATexelAreLostToQuadsAndNotToPatches) {
   EXPECT_LT(std::abs(kept), lost / 2);
 }
 
-// Each level's texel has the nearest depth of its block: patches grow, quads shrink; boxes are never larger than
+// Each texel of a level has the nearest depth of its block: patches grow, quads shrink, and boxes are never larger than
 // blocks.
 TEST_F(MapsBitmask, LevelsFattenPatchesAndBoxesLess) {
   for (const bool thin : {true, false}) {
@@ -261,8 +263,8 @@ TEST_F(MapsBitmask, LevelsFattenPatchesAndBoxesLess) {
                    quad_bias = bias_of(stage, bits(stage, {{"occluder", "quad"}, {"level", level}}, "64"));
       fmt::print("level {}: bias of patches {:+.3f}, boxes {:+.3f}, quads {:+.3f}\n", level, patch_bias, box_bias,
                  quad_bias);
-      // A block at the border of two surfaces takes the nearer one's depth, and loses the other's texels: of bars
-      // alone.
+      // A block at the border of two surfaces takes the nearer depth and loses the other surface's texels: so these
+      // relations hold for bars only.
       if (thin) {
         EXPECT_LE(patch_bias, before);
         EXPECT_LE(std::abs(box_bias), std::abs(patch_bias));
@@ -316,16 +318,16 @@ TEST_F(MapsBitmask, ALightWithoutExtentGivesTheShadowMap) {
   EXPECT_EQ(bits(stage, {{"occluder", "patch"}}).visibility, hard.visibility);
 }
 
-// B11 (Schwarz and Stamminger 2008): under a budget neighbours look at different levels, and where they do V has a
-// step. Between two levels samples are shared out, and the step is gone.
+// Row B11 of docs/predicates.md (Schwarz and Stamminger 2008): under a budget neighbouring pixels may use different
+// levels, and V has a step there. When samples are shared out between two levels, the step vanishes.
 TEST_F(MapsBitmask, BlendedLevelsHaveSmallerSteps) {
-  // Places are so close to one another that their own errors hardly differ.
+  // The places are so close together that the errors of neighbours hardly differ.
   std::vector<double> places;
   for (int i = 0; i < 250; ++i) places.push_back(-2.5 + i / 50.0);
   const Stage stage = along_floor(sphere_over_floor(1, 16), places, light_samples(256));
   const Masks truth = tests::run(*reference::make_exact({}), stage);
   const auto with = [&](MethodOptions options) {
-    options["occluder"] = "patch";  // whose kernels the search makes as wide as each receiver needs
+    options["occluder"] = "patch";  // the search makes its kernels as wide as each receiver needs
     return bits(stage, options, "96");
   };
   std::vector<Masks> levels;
@@ -360,29 +362,30 @@ TEST_F(MapsBitmask, BlendedLevelsHaveSmallerSteps) {
   RecordProperty("blended", fmt::format("{:.4f}", blend));
   EXPECT_GE(changes, 2U);
   EXPECT_LE(blend, 0.5 * step);
-  // Enough of a budget changes nothing.
+  // A large enough budget changes nothing.
   EXPECT_EQ(with({{"budget", "1000000"}}).words, levels.front().words);
 }
 
-// A kernel of w texels a side under a budget of b asks for level log2(w / sqrt(b)), or the next whole one.
+// A kernel of w texels a side under a budget of b gets level log2(w / sqrt(b)), rounded up.
 TEST_F(MapsBitmask, TheBudgetSaysWhichLevel) {
   scenes::Scene scene = bare_floor(1, 3);
   add_quad(scene, {0.013, 2, 0.007}, {0.231, 0, 0}, {0, 0, -0.157}).receives_shadow = false;
-  const Stage stage = on_floor(scene, 1, light_samples(1024));  // its middle
+  const Stage stage = on_floor(scene, 1, light_samples(1024));  // the floor's middle
   const auto with = [&](MethodOptions options) {
     options["occluder"] = "patch";
     options["search"] = "none";
     options["blend"] = "off";
     return bits(stage, options, "200").words;
   };
-  // The window holds the floor, +-3/5, and nothing beside it in 198 texels; the plate is at depth 3.
+  // The window holds the floor, +-3/5, and nothing beside it, in 198 texels; the plate is at depth 3.
   const double across = 2 * (1.0 / 3 - 1.0 / 5) / (1.2 / 198);
   const auto budget = [&](double texels) { return with({{"budget", fmt::format("{:.0f}", texels)}}); };
   std::vector<std::vector<std::uint32_t>> levels;
   for (const char* level : {"0", "1", "2", "3"}) levels.push_back(with({{"level", level}}));
   EXPECT_NE(levels[0], levels[1]);
   EXPECT_NE(levels[1], levels[2]);
-  // The kernel is up to two texels wider than what it holds; just that many of them the finest level may look at.
+  // The kernel is up to two texels wider than the plate's part that it holds; with a budget of just that many texels
+  // the finest level is used.
   double too_few = std::floor(0.98 * across * across), enough = std::ceil(1.02 * (across + 2) * (across + 2));
   EXPECT_EQ(budget(too_few), levels[1]);
   EXPECT_EQ(budget(enough), levels[0]);

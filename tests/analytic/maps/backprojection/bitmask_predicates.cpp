@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what papers say of bitmask on every scene of a class; predicates.cpp has the rest of docs/predicates.md.
+// Tests statements of papers about bitmask, on every scene of a class; the numbers B2 to B8 are rows of
+// docs/predicates.md.
 
 #include "tests/analytic/maps/predicates.hpp"
 
@@ -21,8 +22,8 @@ double leak(const Masks& found, const Masks& truth) {
   return lit / umbra;
 }
 
-// B6 (Schwarz and Stamminger 2007): quads of a connected surface share their borders: no light comes through, as it
-// does between patches.
+// B6 (Schwarz and Stamminger 2007): quads of a connected surface share their borders, so that no light leaks through as
+// it does between patches.
 TEST_F(MapsPredicates, QuadsOfATiltedPlaneDoNotLeakAsPatchesDo) {
   const Stage stage = on_floor(oblique_quad(), 32, light_samples(256));
   const Masks truth = exact(stage);
@@ -36,8 +37,8 @@ TEST_F(MapsPredicates, QuadsOfATiltedPlaneDoNotLeakAsPatchesDo) {
   EXPECT_GT(patches, 0.2);
 }
 
-// B5 (Schwarz and Stamminger 2007): triangles at the outline take back some of what quads lose; what both lose falls
-// with the texels, down to what the light's centre does not see.
+// B5 (Schwarz and Stamminger 2007): triangles at the outline recover some of what quads lose. The loss of both falls
+// with the size of texels, down to what the light's centre does not see.
 TEST_F(MapsPredicates, TrianglesLoseLessThanQuads) {
   const Stage stage = on_floor(sphere_over_floor(), 20, light_samples(256));
   const Masks truth = exact(stage);
@@ -58,8 +59,8 @@ TEST_F(MapsPredicates, TrianglesLoseLessThanQuads) {
   }
 }
 
-/// A light, a wall up to its plane, which makes its maps a hemicube, and boards one behind the other on the wall's side
-/// and below the light.
+/// A light, a wall up to the light's plane (which makes its maps hemicubes), and boards one behind the other, on the
+/// wall's side and below the light.
 scenes::Scene boards_one_behind_the_other() {
   scenes::Scene scene = bare_floor(0.5, 1.5);
   add_quad(scene, {-1.5, 2.5, 0}, {0, 0, 1.5}, {0, 2.5, 0}).casts_shadow = false;
@@ -71,8 +72,8 @@ scenes::Scene boards_one_behind_the_other() {
   return scene;
 }
 
-// A texel's patches are those of its layers, whichever bodies they belong to: of two groups of bodies all layers
-// together hide what each hides alone, in a hemicube, too.
+// A texel has a patch for each of its layers, whichever body the layer belongs to: of two groups of bodies all layers
+// together hide what each group hides alone, in a hemicube, too.
 TEST_F(MapsPredicates, LayersHideWhatTheirBodiesDo) {
   scenes::Scene both = boards_one_behind_the_other(), first = both, second = both;
   for (const std::size_t i : {2U, 3U}) second.objects[i].casts_shadow = false;
@@ -96,7 +97,7 @@ TEST_F(MapsPredicates, LayersHideWhatTheirBodiesDo) {
 }
 
 // B8 (Eisemann et al. 2009, section 5.2.3.2): cost is linear in the number of maps. (Where tiles are left out by the
-// depths that the nearest layer has, as in a closed room, further layers cost more: nothing is known of theirs.)
+// nearest layer's depths, as in a closed room, further layers cost more: their depths are not known.)
 TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
   scenes::Scene shells = bare_floor(1, 3);
   for (int shell = 0; shell < 4; ++shell) {
@@ -122,11 +123,12 @@ TEST_F(MapsPredicates, LayersAskAsManyTimesAsMuch) {
   }
 }
 
-// B2 (Eisemann et al. 2009, section 5.2.3.2): the notes' 256 light samples, 8 x 8 tiles of four on a turned square
-// (rgss), stand in 32 columns of eight: under an edge along these V has 33 levels, steps of 1/32. Where the edge is
-// turned by 20 degrees hardly two of them are passed at once. Ours in rows are 256 columns, and 16 rows.
+// B2 (Eisemann et al. 2009, section 5.2.3.2): the 256 light samples of these course notes are 8 x 8 tiles of four on a
+// turned square (rgss), and stand in 32 columns of eight: under an edge along these columns V has 33 levels, steps of
+// 1/32. With the edge turned by 20 degrees it hardly ever passes two samples at once. Our own samples in rows stand in
+// 256 columns and 16 rows.
 TEST_F(MapsPredicates, TheNotesPatternHasThirtyThreeLevelsUnderAnAlignedEdge) {
-  // The penumbra of an edge half way up is as wide as the light, 2: two levels are 1/128 apart.
+  // The penumbra of an edge half way up is as wide as the light, 2: two of 256 levels are 1/128 apart.
   std::vector<double> places;
   for (int i = 0; i < 1600; ++i) places.push_back(-1.1 + 2.2 * i / 1600);
   const auto levels = [&](double degrees, bool notes, bool across) {
@@ -153,8 +155,8 @@ TEST_F(MapsPredicates, TheNotesPatternHasThirtyThreeLevelsUnderAnAlignedEdge) {
   EXPECT_EQ(std::min(rows, beside), 17U);
 }
 
-// B7 (Eisemann et al. 2009, section 5.2.3.3), without a bias: where patches of a round body's own surface rise above a
-// receiver's plane, quads, for which all four of their corners must, do so less often.
+// B7 (Eisemann et al. 2009, section 5.2.3.3), without a bias: patches of a round body's own surface may rise above a
+// receiver's plane. Quads do so less often, because all four of their corners must be above it.
 TEST_F(MapsPredicates, QuadsHaveLessAcneThanPatches) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});

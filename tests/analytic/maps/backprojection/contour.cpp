@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contours against their closed form, in kernels and sub-lights.
+// Tests contours against their closed form, with kernels and sub-lights.
 
 #include "base/error.hpp"
 #include "tests/agreement/differences.hpp"
@@ -13,11 +13,11 @@ using visibility::MethodOptions;
 
 class MapsContour : public ContourTest {};
 
-// An occluder of n × m texels is n · m − ½ texels large: each of its four corners is cut off by an eighth. Areas are
-// rounded to 2⁻²² of the light for each of the edges, tangents to 2⁻²⁴ of the window's 1.6, which are 1e-6 of the
-// light's width there; and a disk's swept angle, for which drivers may take 4,096 units in the last place, to 2.4e-4 at
-// worst. What this driver takes is seen where about half of the light is hidden, and is no more where an edge grazes
-// it: there a disk of another size shows, which edges through its middle hardly know of.
+// An occluder of n × m texels is n · m − ½ texels large: each of its four corners is cut off by an eighth. For each
+// edge, areas are rounded to 2⁻²² of the light, and tangents to 2⁻²⁴ of the window's 1.6, which is 1e-6 of the light's
+// width there. A disk's swept angle, for which drivers may be off by 4,096 units in the last place, is off by 2.4e-4 at
+// worst. The error of this driver is measured where about half of the light is hidden, and must be no larger where an
+// edge grazes the light: a disk of a wrong size shows there, and hardly where edges cross its middle.
 TEST_F(MapsContour, IsTheOctagonOfTheTexelsThatShade) {
   for (const int shape : {0, 1, 2, 3, 4}) {
     for (const std::uint32_t size : {33U, 96U}) {
@@ -64,8 +64,8 @@ TEST_F(MapsContour, ALevelIsTheOctagonOfItsBlocks) {
   }
 }
 
-// Packets, searches and walks find the contours of a level that a pixel finds alone, and of the two levels that a
-// budget asks for; V lies between theirs.
+// Packets, searches and hierarchies find the same contours as a single pixel does, at one level and at the two levels
+// that a budget chooses; V then lies between those of the two levels.
 TEST_F(MapsContour, LevelsAreTheSameForPacketsAndSearches) {
   for (const auto& scene : {ball_over_floor(1), plate_over_plate()}) {
     const Stage stage(scene, 20, 20, light_samples(1));
@@ -113,8 +113,8 @@ TEST_F(MapsContour, LevelsAreTheSameForPacketsAndSearches) {
   }
 }
 
-// Packets of 64 pixels with kernels of thousands of cells need more turns of loops than drivers for processors let a
-// workgroup have: it is asked again by fewer rows, and neither V nor what is counted of packets shows that.
+// Packets of 64 pixels with kernels of thousands of cells need more loop iterations than a software driver grants a
+// workgroup: the work is then submitted again with fewer rows, and neither V nor the counters of packets show that.
 TEST_F(MapsContour, LoopsThatADriverCutsOffAreRunAgain) {
   const Stage stage(ball_over_floor(1), 16, 16, light_samples(1));
   const auto with = [&](const char* packet) {
@@ -144,7 +144,7 @@ TEST_F(MapsContour, DepthsBehindTheNearestAreAskedInOneWay) {
 }
 
 TEST_F(MapsContour, NothingInTheKernelIsLitAndAnUmbraIsDark) {
-  // Light of half-size 1 at 5, occluder of half-size 1 at 2, floor: umbra where |x| < 1 − 2/3 · ... of the square.
+  // The light has half-size 1 at height 5, the occluder half-size 1 at 2, the floor is at 0: the umbra is |x|, |z| < 1.
   const Stage stage(parallel_square(), 48, 48, light_samples(1));
   const ParallelSquare square(stage);
   const OctagonTwin twin(stage, 128);
@@ -153,7 +153,7 @@ TEST_F(MapsContour, NothingInTheKernelIsLitAndAnUmbraIsDark) {
     std::size_t lit = 0, dark = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       if (!square.on_floor(i)) continue;
-      // V must be the closed form where the twin is farther inside either than the areas' rounding.
+      // V must be exactly 0 or 1 where the twin is farther inside the umbra or the lit part than the areas' rounding.
       const double expected = twin.visibility(i);
       if (expected == 1) {
         ++lit;
@@ -168,7 +168,7 @@ TEST_F(MapsContour, NothingInTheKernelIsLitAndAnUmbraIsDark) {
   }
 }
 
-// Guennebaud 2006's trivial pixels: tighter ranges find more of them, and smaller kernels.
+// Guennebaud 2006's trivial pixels: tighter depth ranges find more of them, and give smaller kernels.
 TEST_F(MapsContour, TighterRangesFindSmallerKernels) {
   const Stage stage(plate_over_plate(), 40, 40, light_samples(1));
   std::array<Counted, 4> runs;
@@ -183,7 +183,7 @@ TEST_F(MapsContour, TighterRangesFindSmallerKernels) {
   EXPECT_LT(runs[3].count("kernelCells"), 0.8 * runs[1].count("kernelCells"));
 }
 
-// The mean over the parts of the light as lights of their own (Yang 2009, section 5).
+// Sub-lights give the mean over the light's parts, each taken as a separate light (Yang 2009, section 5).
 TEST_F(MapsContour, SubLightsAreTheMeanOfContoursOfTheParts) {
   const scenes::Scene scene = ball_over_floor(1);
   const Stage stage(scene, 32, 32, light_samples(1));
@@ -207,8 +207,8 @@ TEST_F(MapsContour, SubLightsAreTheMeanOfContoursOfTheParts) {
   EXPECT_LT(largest, 1e-6);
 }
 
-// Disks, ellipses and polygons are cut in polygons: together they are the light, and looked at from each one's own
-// centroid less is missed, as of a rectangle (MapsContourClaims).
+// Disks, ellipses and polygons are cut into polygons that together make the light. Seen from the centroid of each, less
+// is missed, as for rectangles (MapsContourClaims).
 TEST_F(MapsContour, SubLightsOfAnyShape) {
   for (const int shape : {1, 2, 4}) {
     scenes::Scene scene = ball_over_floor(1);
@@ -227,7 +227,7 @@ TEST_F(MapsContour, SubLightsOfAnyShape) {
   }
 }
 
-// A light whose left half is black is its right half.
+// A light whose left half is black equals its right half alone.
 TEST_F(MapsContour, SubLightsWeighByTheTexture) {
   scenes::Scene scene = ball_over_floor(1);
   const Stage plain(scene, 24, 24, light_samples(4));

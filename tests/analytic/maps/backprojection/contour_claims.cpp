@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what papers say of contours, hierarchies, packets and sub-lights, on scenes of the class that they speak of:
-// signs and rough sizes. docs/contour.md and docs/packet.md have the measured numbers.
+// Tests statements of papers about contours, hierarchies, packets and sub-lights, on scenes of the class that they
+// concern: signs and rough sizes. docs/contour.md and docs/packet.md have the measured numbers.
 
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
 
@@ -16,12 +16,13 @@ class MapsContourClaims : public ContourTest {
   static void record(const std::string& name, double value) { fmt::print("{}: {:.4g}\n", name, value); }
 };
 
-// Atty et al. 2006, 5.2: an edge is off by no more than a texel's projection. The square's four edges are off by half a
-// texel each, which the light sees f / z times as large: t f of the light's width, and where two edges cross it, twice.
+// Atty et al. 2006, 5.2: an edge is off by no more than a texel's projection. Each of the square's four edges is off by
+// half a texel, which the light sees f / z times as large: t f of the light's width, and twice that where two edges
+// cross the light.
 TEST_F(MapsContourClaims, AParallelSquareIsOffByATexelOnTheLightAtMost) {
   const Stage stage(parallel_square(), 40, 40, light_samples(1));
   const ParallelSquare square(stage);
-  // A window of ±4 at 5 and the light's reach beside it, 1 (1/3 − 1/5); f = 3 · 5 / (5 − 3); the light is 2 wide.
+  // The window is ±4 at 5 and the light's reach beside it, 1 (1/3 − 1/5); f = 3 · 5 / (5 − 3); the light is 2 wide.
   double previous = 1;
   for (const std::uint32_t size : {32U, 128U, 512U}) {
     const Masks found = run(maps::make_contour, stage, {{"size", std::to_string(size)}});
@@ -37,7 +38,7 @@ TEST_F(MapsContourClaims, AParallelSquareIsOffByATexelOnTheLightAtMost) {
   }
 }
 
-// Schwarz and Stamminger 2007: what is joined has no gaps.
+// Schwarz and Stamminger 2007: joined surfaces have no gaps.
 TEST_F(MapsContourClaims, NoLightLeaksThroughJoinedSurfaces) {
   scenes::Scene tilted = contour_floor(0.6);
   add_quad(tilted, {0, 2.5, 0}, {1, -1.2, 0}, {0, 0, 1});
@@ -50,7 +51,7 @@ TEST_F(MapsContourClaims, NoLightLeaksThroughJoinedSurfaces) {
   }
 }
 
-// Contours of parts that do not touch in the map are added, also where they overlap from the receiver.
+// Contours of parts that do not touch in the map are added, even where they overlap as seen from the receiver.
 TEST_F(MapsContourClaims, PartsAreAddedAsIfTheyNeverOverlapped) {
   scenes::Scene both = contour_floor(1), left = contour_floor(1), right = contour_floor(1);
   const auto add_left = [](scenes::Scene& scene) { add_quad(scene, {-0.55, 3, 0}, {0.4, 0, 0}, {0, 0, 2}); };
@@ -59,7 +60,7 @@ TEST_F(MapsContourClaims, PartsAreAddedAsIfTheyNeverOverlapped) {
   add_right(both);
   add_left(left);
   add_right(right);
-  for (scenes::Scene* scene : {&left, &right}) {  // slivers keep window and origin
+  for (scenes::Scene* scene : {&left, &right}) {  // slivers keep the window and the origin the same
     for (const double z : {-2.0, 2.0}) {
       add_quad(*scene, {-0.55, 3, z}, {0.4, 0, 0}, {0, 0, 1e-6});
       add_quad(*scene, {0.275, 1, z}, {0.075, 0, 0}, {0, 0, 1e-6});
@@ -77,8 +78,8 @@ TEST_F(MapsContourClaims, PartsAreAddedAsIfTheyNeverOverlapped) {
     const double sum = std::max(0.0, static_cast<double>(a.visibility[i]) + static_cast<double>(b.visibility[i]) - 1);
     if (truth.visibility[i] < sum + 0.05) continue;  // they do not overlap here
     ++overlap;
-    // The slivers leave the window as it is, except for 1e-6: a texel's row or column in one map and not in the other,
-    // of a window 2 wide, is 1/127 · 20 / 2 of the light through the lower plate, which f = 20 enlarges.
+    // The slivers keep the window the same up to 1e-6: one map may have a row or column of texels more than the other.
+    // In a window 2 wide that is 1/127 · 20 / 2 of the light for the lower plate, which f = 20 enlarges.
     added += std::abs(static_cast<double>(whole.visibility[i]) - sum) < 0.08 ? 1 : 0;
   }
   record("C2 pixels with overlap", static_cast<double>(overlap));
@@ -86,7 +87,7 @@ TEST_F(MapsContourClaims, PartsAreAddedAsIfTheyNeverOverlapped) {
   EXPECT_EQ(added, overlap);
 }
 
-// A method that asks one map cannot know what this map does not show.
+// A method that reads one map cannot know about a gap that is not in it.
 TEST_F(MapsContourClaims, AGapThatTheCentreDoesNotSeeIsNotThere) {
   const Stage whole(plates_alike(false), 40, 40, light_samples(1)), gap(plates_alike(true), 40, 40, light_samples(1));
   const visibility::MethodOptions options{{"size", "128"}};
@@ -103,23 +104,23 @@ TEST_F(MapsContourClaims, AGapThatTheCentreDoesNotSeeIsNotThere) {
   record("I14 error with the gap", floor_errors(gap, b, exact_b).shadow);
 }
 
-// Facets between points of a convex body lie in it; contours reach half a texel beyond. Of a body whose outline is w
-// wide at depth z_s, half a texel each way is t z_s f / (z_s · the light's width).
+// Facets between points of a convex body lie inside it; contours reach half a texel beyond it. For a body whose outline
+// is w wide at depth z_s, half a texel on each side is t z_s f / (z_s · the light's width).
 TEST_F(MapsContourClaims, AConvexBodyHidesTooLittleButForHalfATexel) {
   const Stage stage(ball_over_floor(1), 40, 40, light_samples(1));
   const Masks truth = exact(stage);
   for (const std::uint32_t size : {64U, 256U}) {
     const FloorErrors found = errors(stage, truth, {{"size", std::to_string(size)}});
-    // Window: floor ±0.8 and the light's reach beside it, 1 (1/2 − 1/5): 2.2 wide; f at depth 3 is 7.5, the light 2
-    // wide; both sides of the ball cross it.
+    // The window is the floor's ±0.8 and the light's reach beside it, 1 (1/2 − 1/5): 2.2 wide; f at depth 3 is 7.5, the
+    // light is 2 wide; both sides of the ball may cross the light.
     record(fmt::format("I7 lowest V − exact at {}", size), found.lowest);
     EXPECT_GT(found.lowest, -2.2 / (size - 2) * 7.5 / 2);
     EXPECT_GT(found.bias, 0);
   }
 }
 
-// Atty 2006 and all single-map methods: past some size the error is the one view's, and only more views lower it (Yang
-// 2009, section 5; peeling cannot).
+// Atty 2006 and all single-map methods: above some map size the error comes from the single view, and only more views
+// lower it (Yang 2009, section 5; peeling cannot).
 TEST_F(MapsContourClaims, SubLightsBreakTheFloorOfOneView) {
   const Stage stage(ball_over_floor(1), 40, 40, light_samples(1));
   const Masks truth = exact(stage);
@@ -138,8 +139,8 @@ TEST_F(MapsContourClaims, SubLightsBreakTheFloorOfOneView) {
   EXPECT_LT(two.rmse, peel.rmse);
 }
 
-// Yang 2009, figures 7 and 8: a hierarchy of contours leaves out empty and full nodes, Dmitriev and Uralsky's only
-// empty ones, and a kernel alone none; and there are far fewer edges than texels that shade.
+// Yang 2009, figures 7 and 8: a hierarchy of contours skips empty and full nodes, Dmitriev and Uralsky's only empty
+// ones, and a kernel alone none. There are far fewer edges than texels that shade.
 TEST_F(MapsContourClaims, HierarchiesLookAtFewerCells) {
   const Stage stage(ball_over_floor(2), 40, 40, light_samples(1));
   const auto cells = [&](const char* traversal) {
@@ -153,15 +154,15 @@ TEST_F(MapsContourClaims, HierarchiesLookAtFewerCells) {
   record("C6 cells and nodes, hierarchy", looked);
   record("C4 edges", flat.count("edges"));
   EXPECT_EQ(flat.count("edges"), minmax.count("edges"));
-  // Ours leaves out what is beside the light, too.
+  // Our hierarchy also skips nodes beside the light.
   EXPECT_LT(hierarchy.count("edges"), flat.count("edges"));
   EXPECT_LT(looked, 0.8 * looked_minmax);
   EXPECT_LT(looked_minmax, 0.8 * looked_flat);
   EXPECT_LT(flat.count("edges"), 0.1 * looked_flat);
 }
 
-// Yang 2009, section 6: more of the packets that are not trivial are coherent under larger lights (from end to end, not
-// step by step: 0.58, 0.56, 0.69), and packets read less.
+// Yang 2009, section 6: under larger lights more of the nontrivial packets are coherent (overall, though not at every
+// step: 0.58, 0.56, 0.69), and packets read less.
 TEST_F(MapsContourClaims, PacketsAreMoreCoherentUnderLargerLights) {
   std::vector<double> coherent;
   for (const double half : {0.25, 0.5, 1.0}) {
@@ -189,7 +190,7 @@ TEST_F(MapsContourClaims, SubLightsLookAtAsManyTexels) {
         counted(maps::make_packet, stage, {{"size", "128"}, {"sublights", fmt::format("{:.0f}", parts)}});
     const double ratio = some.count("kernelCells") / one.count("kernelCells");
     record(fmt::format("C8 kernel cells, S = {:.0f} over 1", parts), ratio);
-    // A kernel of this scene is at least 8 cells wide: (8 + 2 S)² / (8 + 2)² at most.
+    // A kernel of this scene is at least 8 cells wide, so that the ratio is at most (8 + 2 S)² / (8 + 2)².
     EXPECT_LT(ratio, (8 + 2 * parts) * (8 + 2 * parts) / 100);
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Scenes for contours: what they are about is said beside each. Lights are 5 above a floor at height 0.
+// Scenes for contours; each function says what its scene is for. Lights are 5 above a floor at height 0.
 
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
@@ -15,14 +15,15 @@ inline scenes::Scene contour_floor(double light_half, double floor_half = 4) {
   return scene;
 }
 
-/// A solid: what is seen of its outline from the light's centre is not what other light points see.
+/// A solid body: the outline that the light's centre sees is not the one that other light points see.
 inline scenes::Scene ball_over_floor(double light_half, double height = 2) {
   scenes::Scene scene = contour_floor(light_half);
   add_object(scene, "ball", sphere({0, height, 0}, 1, 24));
   return scene;
 }
 
-/// A plate over a larger plate, apart from it: what the smaller one hides of the larger is missing in the map.
+/// A plate over a larger plate, apart from it: the part of the larger one that the smaller one hides is missing in the
+/// map.
 inline scenes::Scene plate_over_plate(double light_half = 0.6) {
   scenes::Scene scene = contour_floor(light_half);
   add_quad(scene, {0, 3.5, 0}, {0.3, 0, 0}, {0, 0, 0.3});
@@ -30,7 +31,7 @@ inline scenes::Scene plate_over_plate(double light_half = 0.6) {
   return scene;
 }
 
-/// Two plates of which the map shows the same, with a gap between them or without one.
+/// Two plates that look the same in the map whether or not there is a gap between them.
 inline scenes::Scene plates_alike(bool gap) {
   scenes::Scene scene = contour_floor(0.6);
   add_quad(scene, {-1, 3.5, 0}, {1, 0, 0}, {0, 0, 2});
@@ -39,8 +40,8 @@ inline scenes::Scene plates_alike(bool gap) {
   return scene;
 }
 
-/// A parallel square under a disk (1), a polygon, a skew rectangle or an ellipse. The light's first axis stays along x,
-/// where the occluder's sides are.
+/// The parallel square under a disk (1), a polygon (2), a skew rectangle (3) or an ellipse (4). The light's first axis
+/// stays along x, as the occluder's sides do.
 inline scenes::Scene under_shape(int shape) {
   scenes::Scene scene = parallel_square();
   if (shape == 1) scene.lights.front().shape = scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.9};
@@ -59,9 +60,9 @@ inline bool on_object(const Stage& stage, std::size_t pixel, std::uint32_t objec
 struct FloorErrors {
   double rmse = 0, bias = 0;
   double leak = 0;    ///< the share of pixels in the umbra that are brighter than 0.05
-  double dark = 0;    ///< of lit pixels, those that are darker than 0.95
+  double dark = 0;    ///< share of lit pixels that are darker than 0.95
   double shadow = 0;  ///< Σ|V − exact| over the pixels that are not lit
-  double lowest = 0;  ///< of V − exact
+  double lowest = 0;  ///< lowest V − exact
   std::size_t pixels = 0;
 };
 inline FloorErrors floor_errors(const Stage& stage, const Masks& found, const Masks& exact) {
@@ -95,7 +96,7 @@ inline FloorErrors floor_errors(const Stage& stage, const Masks& found, const Ma
   return errors;
 }
 
-/// A method's V, and what it counted.
+/// A method's V and its counters.
 struct Counted {
   Masks masks;
   std::map<std::string, std::uint64_t> counters;

@@ -26,7 +26,8 @@ class MapsContourTexture : public ContourTest {
     }
     return largest;
   }
-  /// Root of the mean square of V − exact over pixels whose whole light is above the tangent plane, or over the others.
+  /// Root mean square of V − exact over pixels whose whole light is above the tangent plane, or (`horizon`) over those
+  /// whose light is partly above it.
   static double rmse(const Stage& stage, const Masks& found, const Masks& truth, bool horizon) {
     double sum = 0;
     std::size_t pixels = 0;
@@ -47,8 +48,9 @@ class MapsContourTexture : public ContourTest {
 
 const std::vector<float> kWindow = {1, 8, 3, 0, 5, 9};
 
-// Each texel is a light of its own in the closed form. Rounding: that of MapsContour.IsTheOctagonOfTheTexelsThatShade,
-// times the brightest column over the mean, 13 / 8.7. A skew light has its texture along its own axes.
+// In the closed form each texel is a separate light. The tolerance is that of
+// MapsContour.IsTheOctagonOfTheTexelsThatShade, times the brightest column over the mean, 13 / 8.7. A skew light has
+// its texture along its own axes.
 TEST_F(MapsContourTexture, IsTheOctagonWeighedTexelByTexel) {
   for (const int shape : {0, 3}) {
     const Stage stage = stage_of(under_shape(shape), 3, kWindow);
@@ -71,8 +73,8 @@ TEST_F(MapsContourTexture, IsTheOctagonWeighedTexelByTexel) {
   }
 }
 
-// Sums of lines through texels in place of sectors and triangles: of one radiance they are the same. Each edge is
-// rounded to 2⁻²² of the light in either, a few hundred of them at most.
+// Textured lights sum lines through texels instead of sectors and triangles: for a texture of one radiance both give
+// the same. Each edge is rounded to 2⁻²² of the light in either sum; there are a few hundred edges at most.
 TEST_F(MapsContourTexture, OneRadianceIsNoTexture) {
   const Stage plain(ball_over_floor(1), 40, 40, light_samples(4));
   const Masks expected = run(maps::make_contour, plain, {{"size", "128"}});
@@ -82,7 +84,7 @@ TEST_F(MapsContourTexture, OneRadianceIsNoTexture) {
   }
 }
 
-// Any search for contours, alone or in packets, adds the same integers.
+// Any search for contours, for single pixels or in packets, adds the same integers.
 TEST_F(MapsContourTexture, SearchesAndPacketsAgree) {
   const Stage stage = stage_of(ball_over_floor(0.7), 3, kWindow, 24);
   const Masks expected = run(maps::make_contour, stage, {{"size", "64"}});
@@ -93,7 +95,8 @@ TEST_F(MapsContourTexture, SearchesAndPacketsAgree) {
 }
 
 // A plate, and a wall whose light is partly below its horizon: the error is about that of a light of one radiance. An
-// edge that is off by a share of the light's width moves V by that times the brightest column over the mean, 13 / 8.7.
+// edge that is off by a share of the light's width moves V by that share times the brightest column over the mean, 13 /
+// 8.7.
 TEST_F(MapsContourTexture, ErrsAsUnderOneRadiance) {
   scenes::Scene scene = parallel_square();
   add_quad(scene, {2.2, 0.9, -0.5}, {1, 0, 0}, {0, 0.9, 0});

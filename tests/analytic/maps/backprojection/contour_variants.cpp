@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what holds of contours on every scene: the search for them never changes a bit of V (Yang et al. 2009, sections
-// 1 and 4.3).
+// Tests an identity of contours on every scene: how they are searched for never changes a bit of V (Yang et al. 2009,
+// sections 1 and 4.3).
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "scenes/formats/reader.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// All variants of the search for the same contours.
+/// All search variants, which must find the same contours.
 std::vector<std::pair<Factory, MethodOptions>> all_ways() {
   std::vector<std::pair<Factory, MethodOptions>> variants;
   for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
@@ -79,8 +79,8 @@ TEST_F(MapsContourVariants, OneImageInHemicubesOnBothSidesAndForEveryShape) {
   }
 }
 
-// Triangles that touch, overlap, stand through the light's plane, behind it and on the receivers: V is defined, in any
-// variant the same, and the same for another order of the triangles.
+// Triangles that touch, overlap, cross the light's plane, or lie behind it or on the receivers: V is defined, is the
+// same in all variants, and does not depend on the order of the triangles.
 TEST_F(MapsContourVariants, OneImageOfSoupsAndWithinBounds) {
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
     std::mt19937 random(seed);
@@ -106,7 +106,7 @@ TEST_F(MapsContourVariants, OneImageOfSoupsAndWithinBounds) {
   }
 }
 
-// Meshes with every defect that there is a name for, and soups whose corners, edges and planes coincide.
+// Meshes with every named defect, and soups whose corners, edges and planes coincide.
 TEST_F(MapsContourVariants, OneImageOfBrokenMeshesAndLatticeSoups) {
   for (const std::uint32_t seed : {1U, 2U}) {
     const mesh::LatticeSoup soup{.triangles = 40, .cells = 3, .seed = seed, .center = {0, 1, 0}};
@@ -119,7 +119,7 @@ TEST_F(MapsContourVariants, OneImageOfBrokenMeshesAndLatticeSoups) {
   expect_one_image(broken, "32", "broken mesh");
 }
 
-// Nodes are entered for outlines alone, which grow as a map's side does, 4 times; areas would grow 16 times. The
+// Nodes are entered for outlines only, whose length grows with a map's side: 4 times; areas would grow 16 times. The
 // light's plane cuts the floor: a hemicube's sideways faces see most of the floor, and what is beside the light.
 TEST_F(MapsContourVariants, HierarchiesFollowOutlinesInHemicubes) {
   scenes::Scene scene = contour_floor(0.6);

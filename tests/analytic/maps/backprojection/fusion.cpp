@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests how parts of a shadow are joined: sums, unions, and the deepest layer alone, where all parts are rectangles
-// parallel to the light and known in closed form.
+// Tests how parts of a shadow are combined (sums, unions, the deepest layer alone) on parts that are rectangles
+// parallel to the light, known in closed form.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
@@ -13,13 +13,14 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// A plate `depth` below the light, which is 5 above the floor: as the light's centre sees it, in x/z and y/z.
+/// A plate `depth` below the light, which is 5 above the floor; its bounds are as the light's centre sees it, in x/z
+/// and y/z.
 struct Plate {
   double depth;
   glm::dvec2 lower, upper;
 };
 
-/// A rectangle of the light's plane.
+/// A rectangle in the light's plane.
 struct OnLight {
   glm::dvec2 lower, upper;
   [[nodiscard]] bool has(const glm::dvec2& at) const {
@@ -50,19 +51,19 @@ class MapsFusion : public MapsTest {
     const glm::dvec3 p = glm::dvec3(stage.samples.p[pixel]) + stage.floats.origin;
     return {p.x, p.z};
   }
-  /// Returns the part of the light that the map's texels of a plate hide from a point of the floor: the texels end
-  /// beside the plate by up to half a texel, and by the snapping of corners. `out`: 1 the largest, -1 the smallest, 0
-  /// the plate itself.
+  /// Returns the part of the light that a plate's texels hide from a point of the floor. The texels end up to half a
+  /// texel, plus the snapping of corners, away from the plate's border. `out`: 1 for the largest, -1 for the smallest,
+  /// 0 for the plate itself.
   static OnLight seen(const Plate& plate, const glm::dvec2& from, double texel, int out) {
     const double f = plate.depth * kHeight / (kHeight - plate.depth), beside = out * (0.5 + 1.0 / 256) * texel;
     return {(plate.lower - beside - from / kHeight) * f, (plate.upper + beside - from / kHeight) * f};
   }
-  /// The window holds the floor alone: no plate is seen beside it.
+  /// The window holds the floor only: all plates are seen in front of it.
   static double texel_of(std::uint32_t size) { return 2 * kFloor / kHeight / (size - 2); }
 };
 
-// I18 (Eisemann et al. 2009, equation 1.5): with exact shares B of the parts of any caster, the whole hides at least
-// the largest and at most their sum; and neither bound is far.
+// Row I18 of docs/predicates.md (Eisemann et al. 2009, equation 1.5): if the parts of a caster hide exact shares B, the
+// whole hides at least the largest share and at most their sum; and both bounds are nearly reached.
 TEST_F(MapsFusion, WhatPartsHideBoundsWhatTheWholeHides) {
   double nearest_to_max = 1, nearest_to_sum = 1;
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
@@ -111,8 +112,8 @@ TEST_F(MapsFusion, WhatPartsHideBoundsWhatTheWholeHides) {
   EXPECT_LT(nearest_to_sum, 0.01);
 }
 
-// Three plates are apart as the light's centre sees them and overlap as the floor sees them. Our own methods make sums
-// of them (patches, outlines) or unions (bits), each between what the smallest and the largest texels leave visible.
+// Three plates are apart as seen from the light's centre and overlap as seen from the floor. Our methods add them
+// (patches, outlines) or unite them (bits); each result is between those of the smallest and the largest texels.
 TEST_F(MapsFusion, SumsAreSumsAndUnionsUnions) {
   constexpr std::uint32_t kSize = 128, kSamples = 256;
   const std::vector<Plate> plates{
@@ -134,9 +135,9 @@ TEST_F(MapsFusion, SumsAreSumsAndUnionsUnions) {
       least += seen(plate, from, texel, -1).share(kHalf);
       most += seen(plate, from, texel, 1).share(kHalf);
       const double side = texel * plate.depth * kHeight / (kHeight - plate.depth);
-      corners += 0.5 * side * side / (4 * kHalf * kHalf);  // each of four is cut off by an eighth of a texel
+      corners += 0.5 * side * side / (4 * kHalf * kHalf);  // each of four corners is cut off by an eighth of a texel
     }
-    // Shares are integers of 2^-30, of outlines of 2^-22, for the hundred texels or so that a border has.
+    // Shares are integers of 2^-30 (for outlines 2^-22), summed over the hundred texels or so of a border.
     const auto between = [&](const Masks& found, double low, double high, const char* what) {
       const double hidden = 1 - static_cast<double>(found.visibility[i]);
       EXPECT_GE(hidden, std::min(low, 1.0) - 5e-5) << what << ", pixel " << i;
@@ -165,17 +166,17 @@ TEST_F(MapsFusion, SumsAreSumsAndUnionsUnions) {
   fmt::print("V of sums known to ±{:.4f} in the mean; {} of {} bits undecided, {} twice hidden\n", open / doubled / 2,
              undecided, count, overlap);
   RecordProperty("known to", fmt::format("{:.4f}", open / doubled / 2));
-  // Heights off by 2 % move borders by that share of their distance from the light's middle: 0.01 of its width and
-  // more, over all.
+  // Heights that are off by 2 % move borders by that share of their distance from the light's middle: in all by more
+  // than 0.01 of the light's width.
   EXPECT_LT(open / doubled / 2, 0.02);
   EXPECT_EQ(wrong_bits, 0U);
   EXPECT_LT(undecided, count / 25);
   EXPECT_GT(overlap, static_cast<double>(count) / 100) << "they overlap nowhere";
 }
 
-// Bavoil et al. 2006, figure 5a: of a texel's surfaces the deepest that hides some of the light counts and the one
-// before it does not, though it hides another part. From beside two plates that the light's centre sees one behind the
-// other the light comes through; a union of the layers lets none through.
+// Bavoil et al. 2006, figure 5a: of a texel's surfaces only the deepest one that hides some of the light counts,
+// although a nearer one hides another part. Two plates stand one behind the other as seen from the light's centre; at
+// places beside them light leaks through. A union of the layers lets none through.
 TEST_F(MapsFusion, ADeepPatchThatIsHalfOnTheLightHidesTheOneBeforeIt) {
   constexpr std::uint32_t kSize = 256;
   const Plate upper{2.5, {0.04, -0.3}, {0.09, 0.3}}, lower{3.5, {0.04, -0.3}, {0.09, 0.3}};
@@ -192,7 +193,8 @@ TEST_F(MapsFusion, ADeepPatchThatIsHalfOnTheLightHidesTheOneBeforeIt) {
   for (std::size_t i = 0; i < places.size(); ++i) {
     const glm::dvec2 from = on_floor_at(stage, i);
     const double f = lower.depth * kHeight / (kHeight - lower.depth);
-    // Columns and rows whose deeper patch is on the light do not count the nearer one: a texel more or less.
+    // In columns and rows whose deeper patch is on the light, the nearer one does not count; this may be off by a
+    // texel.
     double low = 1, high = 0;
     for (const double texels : {-1.0, 1.0}) {
       const glm::dvec2 reach(kHalf / f + texels * texel);
@@ -210,7 +212,7 @@ TEST_F(MapsFusion, ADeepPatchThatIsHalfOnTheLightHidesTheOneBeforeIt) {
     EXPECT_GE(hidden, low - 5e-5) << places[i];
     EXPECT_LE(hidden, high + 5e-5) << places[i];
     EXPECT_LT(high - low, 0.06);
-    // An edge passes one light sample in a row of 32.
+    // An edge passes one light sample in each row of 32.
     EXPECT_NEAR(joined.visibility[i], truth.visibility[i], 4.0 / 32 / 2 + (high - low)) << places[i];
     leak = std::max(leak, static_cast<double>(peeled.visibility[i] - truth.visibility[i]));
     fmt::print("at {}: peeled {:.4f}, exact {:.4f}\n", places[i], peeled.visibility[i], truth.visibility[i]);

@@ -21,8 +21,8 @@ constexpr const char* kHorizonVariants[] = {"backproject",
                                             "bitmask",
                                             "soft-shadow-map:receiverSize=256"};
 
-/// A wall in the plane x = 0, lit from x > 0 by a light that reaches 1 to either side of x = `aside` at height 5;
-/// boards stand before it, at height 3.5, from x = `from` to x = `to`. The wall casts a shadow or not.
+/// A wall in the plane x = 0, lit from x > 0 by a light at height 5 that reaches 1 to either side of x = `aside`. A
+/// board in front of the wall, at height 3.5, reaches from x = `from` to x = `to`. `casts`: the wall casts a shadow.
 scenes::Scene wall(double aside, double from, double to, bool casts) {
   scenes::Scene scene;
   add_quad(scene, {0, 1.5, 0}, {0, 1.5, 0}, {0, 0, 1.5}).casts_shadow = casts;
@@ -40,10 +40,10 @@ class MapsHorizon : public MapsTest {
   }
 };
 
-// Half of the light, or so, is below the horizon, and a board from the wall on hides all that is above, or a part. A
-// texel of the window, which is 1.1 wide to either side, is 2.2 / 128 wide at depth 1, and 1.5 2.9 / 1.4 as wide on the
-// light seen from the upper end: .027 of it. The board's border is half of one off, at either end, and so may the
-// plane's be that the bias forgives.
+// About half of the light is below the horizon, and a board that starts at the wall hides all or a part of the rest. A
+// texel of the window, which is 1.1 wide to either side, is 2.2 / 128 wide at depth 1, and 1.5 2.9 / 1.4 times as wide
+// on the light as seen from the upper end: 0.027 of the light. The board's border may be off by half of that at either
+// end, and so may the plane's border, because of the bias.
 TEST_F(MapsHorizon, WhatIsHiddenIsTakenFromWhatIsAbove) {
   for (const double aside : {-0.1, 0.4}) {
     for (const double to : {1.5, 0.3}) {
@@ -62,9 +62,9 @@ TEST_F(MapsHorizon, WhatIsHiddenIsTakenFromWhatIsAbove) {
   }
 }
 
-// Nothing stands before the wall, which casts: from below the wall's horizon the light's centre sees its back, which
-// hides nothing. (Answers of bitmask and soft-shadow-map are above; those methods never counted what is below the
-// horizon.)
+// Nothing stands in front of the wall, which casts: below the wall's horizon the light's centre sees the wall's back,
+// which hides nothing. (bitmask and soft-shadow-map never counted what is below the horizon; soft-shadow-map is only in
+// the test above.)
 TEST_F(MapsHorizon, TheWallsOwnBackHidesNothing) {
   for (const double aside : {-0.4, -0.1, 0.1}) {
     scenes::Scene scene = wall(aside, 4, 5, true);
@@ -74,7 +74,7 @@ TEST_F(MapsHorizon, TheWallsOwnBackHidesNothing) {
       if (std::string(words).starts_with("soft")) continue;
       const Masks found = run(*MapVariant(words).with({{"size", "64"}}).make(device()), stage);
       for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-        // bitmask counts samples, 16 across.
+        // bitmask counts samples, 16 in each direction.
         EXPECT_NEAR(found.visibility[i], above, std::string(words) == "bitmask" ? 0.07 : 1e-4)
             << words << ", " << aside;
       }
@@ -82,7 +82,7 @@ TEST_F(MapsHorizon, TheWallsOwnBackHidesNothing) {
   }
 }
 
-// Boards beyond the wall's plane are below its horizon: the light that they hide is not counted twice.
+// Boards behind the wall's plane are below its horizon: the light that they hide is not counted twice.
 TEST_F(MapsHorizon, WhatIsBelowThePlaneHidesNothingAboveTheHorizon) {
   for (const double aside : {-0.4, 0.1, 0.4}) {
     const Stage stage = stage_of(wall(aside, -1.5, -0.02, false));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares each bit of layer-rays with a ray that is tried at every texel, wall and column of the layers. The surfaces
-// are those of patches; errors get smaller with every layer, and are large where a layer is missing.
+// Compares each bit of layer-rays with a ray that is tested against every texel, wall and column of the layers. Without
+// walls the surfaces are those of bitmask's patches. Errors shrink with every layer, and are large where a layer is
+// missing.
 
 #include "reference/methods.hpp"
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// The layers of a map with one window, in double; every caster is far in front of every receiver.
+/// The layers of a map with one window, in double; every caster is well above every receiver.
 class RayTwin {
  public:
   RayTwin(const render::Device& device, const Stage& stage, std::uint32_t size, std::uint32_t layers, double gap,
@@ -60,7 +61,7 @@ class RayTwin {
     });
   }
 
-  /// Returns whether the ray passes through the pyramid of a texel, between the column's ends.
+  /// Returns whether the ray passes through a texel's pyramid between the ends of a column.
   [[nodiscard]] bool meets_column(const glm::dvec3& e, const glm::dvec3& direction, std::uint32_t x,
                                   std::uint32_t y) const {
     const glm::dvec2 from = corner(x, y), to = corner(x + 1, y + 1);
@@ -82,7 +83,7 @@ class RayTwin {
     return false;
   }
 
-  /// The wall over the border between two neighbours along this axis.
+  /// Whether the ray meets the wall on the border between two neighbouring texels along this axis.
   [[nodiscard]] bool meets_wall(const glm::dvec3& e, const glm::dvec3& direction, const Cell& one, const Cell& other,
                                 int axis) const {
     const double border = corner(other[0], other[1])[axis];
@@ -98,7 +99,7 @@ class RayTwin {
         for (const double behind : b) {
           const auto between = [&](double depth) { return depth > before && depth < behind; };
           if (before > q.z || behind <= q.z) continue;
-          // The ray's neighbours in both lists.
+          // The layers next to the ray in both lists.
           if (std::ranges::any_of(a, [&](double d) { return between(d) && d <= q.z; })) continue;
           if (std::ranges::any_of(b, [&](double d) { return between(d) && d > q.z; })) continue;
           const double step = behind - before;
@@ -121,7 +122,7 @@ class RayTwin {
   std::uint32_t size_;
   maps::LightBasis basis_;
   glm::dvec2 lower_{0}, texel_{0};
-  std::vector<std::vector<double>> depths_;  ///< of each texel, nearest first
+  std::vector<std::vector<double>> depths_;  ///< per texel, nearest first
 };
 
 /// A board that stands on edge under the light: twenty-five times as high as it is thick.
@@ -153,7 +154,7 @@ class MapsLayerRays : public MapsTest {
   }
 };
 
-// Rays within 1e-5 of a border may go either way; all others must be what the twin says.
+// Rays within 1e-5 of a border may be decided either way; all others must agree with the twin.
 TEST_F(MapsLayerRays, EachBitIsWhatALongWayThroughAllTexelsSays) {
   constexpr std::uint32_t kSize = 24;
   std::size_t by_walls = 0, by_columns = 0;
@@ -187,8 +188,8 @@ TEST_F(MapsLayerRays, EachBitIsWhatALongWayThroughAllTexelsSays) {
   EXPECT_GT(by_columns, 10U) << "no column hides anything";
 }
 
-// A texel without walls hides what bitmask's patch hides: two methods find the same set of light samples, in a
-// hemicube's upper face, too. (Patches on sideways faces take a texel's slanted sides where its middle sees them.)
+// Without walls a texel hides what bitmask's patch hides: both methods find the same light samples, in a hemicube's
+// upper face, too. (On sideways faces patches take a texel's slanted sides as seen from its middle.)
 TEST_F(MapsLayerRays, WithoutWallsTheyAreJoinedPatches) {
   for (const scenes::Scene& scene : {sphere_over_floor(), square_above_plate(), oblique_quad(0.5), box_over_floor()}) {
     const Stage stage = on_floor(scene, 16, light_samples(64));
@@ -201,12 +202,12 @@ TEST_F(MapsLayerRays, WithoutWallsTheyAreJoinedPatches) {
       hidden += static_cast<std::size_t>(std::popcount(~found.words[k]));
     }
     EXPECT_GT(hidden, 500U);
-    EXPECT_LE(differing, 3U) << "of " << hidden;  // on a border, whose product rounds the one way or the other
+    EXPECT_LE(differing, 3U) << "of " << hidden;  // on a border, whose product may round either way
   }
 }
 
-// All layers of one closed body converge to the truth, about as texels do; one layer does not, since it has nothing
-// that the centre does not see (docs/predicates.md, E1).
+// With all layers of one closed body V converges to the truth about as fast as texels shrink. With one layer it does
+// not, since that lacks everything that the centre does not see (docs/predicates.md, E1).
 TEST_F(MapsLayerRays, AllLayersConvergeAndOneDoesNot) {
   const Stage stage = on_floor(sphere_over_floor(1, 16), 14, light_samples(256));
   std::map<std::string, std::array<double, 3>> errors;
@@ -225,7 +226,7 @@ TEST_F(MapsLayerRays, AllLayersConvergeAndOneDoesNot) {
   EXPECT_LT(errors["2"][2], 0.2 * errors["1"][2]);
 }
 
-// Two layers know what one cannot: a lower plate, whole or half, under half a plate.
+// Two layers know what one cannot: whether a whole or half a lower plate lies under the upper half plate.
 TEST_F(MapsLayerRays, OneLayerHasOneImageAndTwoTellTheScenesApart) {
   const Stage gap = on_floor(plates_with_gap(true), 16, light_samples(64)),
               whole = on_floor(plates_with_gap(false), 16, light_samples(64));
@@ -235,7 +236,8 @@ TEST_F(MapsLayerRays, OneLayerHasOneImageAndTwoTellTheScenesApart) {
   EXPECT_LT(error(whole, rays(whole, {{"layers", "2"}}, "128")), 0.02);
 }
 
-// The sides of a body that stands under the light are in no texel: only its inside hides what passes through both.
+// The sides of a body that stands under the light cover no texel: only its inside hides rays that pass through both
+// sides.
 TEST_F(MapsLayerRays, TheSidesOfABoardAreItsInside) {
   const Stage stage = on_floor(upright_board(), 24, light_samples(256));
   const double surfaces = error(stage, rays(stage, {{"layers", "2"}}, "256")),
@@ -244,7 +246,7 @@ TEST_F(MapsLayerRays, TheSidesOfABoardAreItsInside) {
   EXPECT_LT(full, 0.4 * surfaces);
 }
 
-// A ray in a hemicube goes on from face to face.
+// A ray in a hemicube continues from face to face.
 TEST_F(MapsLayerRays, InAHemicubeTheyAgreeWithTheExactPairs) {
   scenes::Scene scene = bare_floor(0.5, 1.5);
   add_quad(scene, {-1.5, 2.5, 0}, {0, 0, 1.5}, {0, 2.5, 0}).casts_shadow = false;  // a wall up to the light's plane

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "maps/backprojection/patches/lens.glsl"
 
-// Computes the area that two disks share, from their radii and the distance of their centres.
+// Computes the area that two disks share, from their radii and the distance between their centres.
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Disks { vec3 disks[]; };

@@ -13,7 +13,7 @@ namespace {
 
 class MapsLightTable : public MapsTest {
  protected:
-  /// Returns the answers of both methods, with maps of 256² texels, each of which is asked.
+  /// Returns V of both methods, with maps of 256² texels, all of which are used.
   static std::array<Masks, 2> both(const Stage& stage) {
     return {run(maps::make_backproject, stage, {{"size", "256"}}),
             run(maps::make_backproject_peel, stage, {{"size", "256"}, {"samples", "0"}})};
@@ -21,7 +21,8 @@ class MapsLightTable : public MapsTest {
   static visibility::Light light_of(const scenes::Scene& scene) {
     return visibility::make_light(scene, 0, glm::dvec3(0), light_samples(1));
   }
-  /// The share of the bounding rectangle [0, x] × [0, y] by the table, as light_table.glsl reads it.
+  /// The table's share of the light in the rectangle [0, x] × [0, y] of its bounds, interpolated as light_table.glsl
+  /// does.
   static double share(const maps::LightTableData& data, const glm::dvec2& unit) {
     const glm::dvec2 at = unit * glm::dvec2(data.head.width, data.head.height);
     const glm::dvec2 cell = glm::min(glm::floor(at), glm::dvec2(data.head.width - 1, data.head.height - 1)),
@@ -35,7 +36,7 @@ class MapsLightTable : public MapsTest {
   }
 };
 
-// The reference is a regular grid of a million points of the light's bounding rectangle: right to a row of it, 1e-3. A
+// The reference is a regular grid of a million points in the light's bounding rectangle, accurate to one row, 1e-3. A
 // cell of the table has 1/256² of the rectangle and is off by less than that.
 TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
   scenes::Scene scene = bare_floor(1);
@@ -86,12 +87,12 @@ TEST_F(MapsLightTable, HoldsTheShareOfEveryCorner) {
   }
 }
 
-/// The columns have 5, 7 and 12 of the texels' sum, 24; the rows from below 18 and 6.
+/// The columns have 5, 7 and 12 of the texels' sum of 24; the rows, from below, 18 and 6.
 scenes::Texture three_by_two() {
   scenes::Texture texture;
   texture.width = 3;
   texture.height = 2;
-  texture.texels = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}, {5, 5, 5}, {9, 9, 9}};  // the upper row first
+  texture.texels = {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}, {5, 5, 5}, {9, 9, 9}};  // upper row first
   return texture;
 }
 
@@ -107,9 +108,9 @@ TEST_F(MapsLightTable, WeighsATexturesTexels) {
   EXPECT_NEAR(share(data, {0.5, 0.25}), (4.0 + 2.5) / 2 / 24, 1e-6);
 }
 
-// A board whose straight edge stands between a disk and the floor: V is a segment of the disk. Where the edge is seen
-// is off by up to a texel t at depth 3, on the light t · f, f = 3 · 5 / (5 − 3); a disk is 2 r wide there at most. The
-// window holds the floor, ±2 / 5, and what of the board is r (1/3 − 1/5) beside it.
+// A board with a straight edge stands between a disk and the floor: V is a segment of the disk. The edge's place is off
+// by up to a texel t at depth 3, which is t · f on the light, f = 3 · 5 / (5 − 3); there the disk is at most 2 r wide.
+// The window holds the floor, ±2 / 5, and the board's part up to r (1/3 − 1/5) beside it.
 TEST_F(MapsLightTable, ADiskBehindAHalfPlane) {
   constexpr double kRadius = 0.7, kEdge = 0.3;
   scenes::Scene scene = bare_floor(1);
@@ -122,7 +123,7 @@ TEST_F(MapsLightTable, ADiskBehindAHalfPlane) {
   for (const Masks& found : both(stage)) {
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
       const double x = static_cast<double>(stage.samples.p[i].x) + stage.floats.origin.x;
-      // The light point at s is hidden where the ray from x is beyond the edge at height 2 of 5.
+      // The light point at s is hidden where the ray from x passes the edge's plane, at height 2 of 5, beyond the edge.
       const double t = std::clamp((kEdge - 0.6 * x) / 0.4 / kRadius, -1.0, 1.0);
       const double seen = 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / std::numbers::pi;
       most = std::max(most, std::abs(found.visibility[i] - seen));
@@ -132,9 +133,9 @@ TEST_F(MapsLightTable, ADiskBehindAHalfPlane) {
   EXPECT_LT(most, bound);
 }
 
-// The same edge before a square of half-size 1 whose table has 3 × 2 cells, so that nearly all V come from inside of
-// them; across the columns, and across the rows. Of a unit of length no column has more than 12/24 / (2/3) of the
-// light, no row more than 18/24.
+// The same edge in front of a square of half-size 1 whose table has 3 × 2 cells, so that nearly all V come from the
+// inside of cells; the edge moves across the columns, then across the rows. Per unit of length no column has more than
+// 12/24 / (2/3) of the light, no row more than 18/24.
 TEST_F(MapsLightTable, ATextureBehindAHalfPlane) {
   constexpr double kEdge = 0.3, kMost = 0.75;
   const double texel = (0.8 + 2 * (1 / 3.0 - 1 / 5.0)) / 254, bound = texel * 7.5 * kMost;
@@ -160,7 +161,7 @@ TEST_F(MapsLightTable, ATextureBehindAHalfPlane) {
   }
 }
 
-// Upright receivers below the light see the part of it that is in front of them; nothing casts.
+// Upright receivers below the light see the part of it that is in front of them; nothing casts a shadow.
 TEST_F(MapsLightTable, TheHorizonCutsLightsOfAnyShape) {
   scenes::Scene scene = bare_floor(1);
   for (const double x : {-0.6, 0.2, 0.5}) {
@@ -180,11 +181,12 @@ TEST_F(MapsLightTable, TheHorizonCutsLightsOfAnyShape) {
                 outlines = run(maps::make_contour, stage, {{"size", "16"}});
     std::size_t cut = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      // Closed forms in float: a light of size 1 at coordinates of some units. An ellipse is a polygon of 256 sides.
+      // The method uses closed forms in float: a light of size 1 at coordinates of a few units. An ellipse is a polygon
+      // of 256 sides.
       const double polygon = stage.light.kind == visibility::LightKind::ellipse ? 1.27 / (256 * 256) : 0;
       EXPECT_NEAR(found.visibility[i], exact.visibility[i], 2e-5 + polygon) << i;
       EXPECT_NEAR(outlines.visibility[i], exact.visibility[i], 1e-4 + polygon)
-          << i;  // a horizon is an outline's edge there
+          << i;  // there the horizon is an edge of an outline
       cut += exact.visibility[i] > 0 && exact.visibility[i] < 1 ? 1 : 0;
     }
     EXPECT_GT(cut, 20U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Closed form of what contours hide under the parallel square.
+// A closed form of the light that contours hide under the parallel square.
 
 #include "maps/host/map_fit.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
@@ -11,11 +11,11 @@
 
 namespace penumbra::tests {
 
-/// The area that contours hide under the parallel square: the texels whose centres it holds, with the corners cut off
-/// midway to the next texels' centres, projected onto the light.
+/// The area that contours hide under the parallel square: the texels whose centres the square covers, with corners cut
+/// off midway to the next texels' centres, projected onto the light.
 class OctagonTwin {
  public:
-  /// `level`: blocks of 2^level texels a side are one, which shades if any of them does.
+  /// With `level`, blocks of 2^level texels a side act as one texel, which shades if any texel of the block does.
   OctagonTwin(const Stage& stage, std::uint32_t size, std::uint32_t level = 0) : stage_(&stage) {
     const maps::LightBasis basis = maps::light_basis(stage.light);
     const maps::LightBounds bounds = maps::light_bounds(stage.light, basis);
@@ -25,14 +25,14 @@ class OctagonTwin {
     const maps::gpu::SideView& side = fitted.views.front().side[0];
     basis_ = basis;
     glm::dvec2 lower(1e30), upper(-1e30);
-    for (std::size_t i = 6; i < 12; ++i) {  // the occluder's corners follow the floor's six
+    for (std::size_t i = 6; i < 12; ++i) {  // the floor has the first six positions, the occluder the next six
       const glm::dvec3 corner = basis.local(stage.floats.positions[i]);
       lower = glm::min(lower, glm::dvec2(corner) / corner.z);
       upper = glm::max(upper, glm::dvec2(corner) / corner.z);
       height_ = corner.z;
     }
     texel_ = (glm::dvec2(side.upper) - glm::dvec2(side.lower)) / static_cast<double>(size);
-    // First and last texels whose centres it holds, or their blocks, and half a texel beyond: the contour.
+    // The contour: first and last texels (or blocks) whose centres the square covers, and half a texel beyond them.
     const double block = 1U << level;
     glm::dvec2 first = glm::ceil((lower - glm::dvec2(side.lower)) / texel_ - 0.5);
     glm::dvec2 last = glm::floor((upper - glm::dvec2(side.lower)) / texel_ - 0.5);
@@ -45,7 +45,7 @@ class OctagonTwin {
     outline_ = {{a.x + half.x, a.y}, {b.x - half.x, a.y}, {b.x, a.y + half.y}, {b.x, b.y - half.y},
                 {b.x - half.x, b.y}, {a.x + half.x, b.y}, {a.x, b.y - half.y}, {a.x, a.y + half.y}};
     if (stage.light.kind == visibility::LightKind::disk) {
-      constexpr int kSides = 4096;  // circumscribed and inscribed differ in area by 2 (π / 4096)² = 1.2e-6
+      constexpr int kSides = 4096;  // circumscribed and inscribed polygons differ in area by 2 (π / 4096)² = 1.2e-6
       for (int i = 0; i < kSides; ++i) {
         const double angle = 2 * std::numbers::pi * i / kSides;
         light_.emplace_back(stage.light.radius * std::cos(angle), stage.light.radius * std::sin(angle));
@@ -61,7 +61,7 @@ class OctagonTwin {
     }
   }
   [[nodiscard]] double visibility(std::size_t pixel) const { return 1 - hidden_of(light_, pixel) / area(light_); }
-  /// V of a rectangle light with a texture: each texel hidden as a light of its own, weighted by its luminance.
+  /// V of a rectangle light with a texture: each texel is a separate light, weighted by its luminance.
   [[nodiscard]] double visibility(std::size_t pixel, const visibility::LightTexture& texture) const {
     const visibility::LightFrame frame = visibility::light_frame(stage_->light);
     double hidden = 0, whole = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests which packets look for contours together (Yang et al. 2009, section 4.3, equations 4 to 6); the kernels of a
-// packet's pixels decide here. V is the same in both cases (MapsContourVariants): only counters show whether a cost or
-// a chance is off.
+// Tests which packets search for contours together (Yang et al. 2009, section 4.3, equations 4 to 6), which depends on
+// the kernels of a packet's pixels. V is the same either way (MapsContourVariants): only counters show an error in a
+// cost or a chance.
 
 #include "maps/host/map_fit.hpp"
 #include "tests/analytic/maps/backprojection/contour_scenes.hpp"
@@ -17,8 +17,8 @@ constexpr double kLampHeight = 5, kPlate = 2.5;  // heights over the floor
 /// Pixels of a packet, in the light's frame.
 using Packet = std::array<glm::dvec3, std::size_t{kAcross} * kDown>;
 
-/// The light's centre over the edge of a plate, which every kernel crosses: nothing is trivial, and what there is in
-/// front is no nearer anywhere than the plate.
+/// The light's centre is over the edge of a plate, which every kernel crosses: no pixel is trivial, and nothing in
+/// front of a receiver is nearer to the light than the plate.
 scenes::Scene over_an_edge() {
   scenes::Scene scene = contour_floor(0.2);
   scene.objects[0].casts_shadow = false;
@@ -46,8 +46,8 @@ class Kernels {
       return extent.x * extent.y;
     }
   };
-  /// The cells between the texels that a receiver sees in front of the light, and one more before and behind; nothing
-  /// where rounding may choose another texel, or the map ends.
+  /// Returns the receiver's kernel: the cells between the texels that it sees in front of the light, and one more on
+  /// each side. Returns nullopt where rounding may choose another texel, or the map ends.
   [[nodiscard]] std::optional<Cells> operator()(const glm::dvec3& e) const {
     constexpr double kNear = kLampHeight - kPlate;
     const glm::dvec2 at(e.x / e.z, e.y / e.z), reach = half_ * (1 / kNear - 1 / e.z);
@@ -70,8 +70,8 @@ class Kernels {
   glm::dvec2 half_{0}, lower_{0}, texel_{1};
 };
 
-/// Ratio of the packet's cost to its pixels' costs (equation 6), and the chance that some texel separates the packet
-/// (equations 4 and 5).
+/// The packet's cost over the sum of its pixels' costs (equation 6), and the probability that some texel separates the
+/// packet (equations 4 and 5).
 struct Odds {
   double cost = 0, apart = 0;
 };
@@ -88,7 +88,7 @@ std::optional<Odds> odds_of(const Kernels& kernels, const Packet& packet) {
     deepest = std::max(deepest, e.z);
   }
   const double width = std::sqrt(all.count());
-  // Depths from the plate's to what stands for nothing.
+  // Depths range from the plate's to the one that stands for an empty texel.
   const double null_share = (deepest - nearest) / (kernels.far() - (kLampHeight - kPlate));
   return Odds{(std::log2(width) + 1 + static_cast<double>(packet.size())) * width / alone,
               1 - std::pow(1 - null_share, all.count())};
@@ -98,7 +98,8 @@ class PacketCosts : public ContourTest {
  protected:
   static constexpr std::uint32_t kSize = 128, kColumns = 20, kRows = 20;
 
-  /// Returns as many packets as the picture has, from `make` (random, all alike in the light's frame), that `fits`.
+  /// Returns as many packets as the picture has: those made by `make` (random, all alike in the light's frame) that
+  /// `fits` accepts.
   template <typename Make, typename Fits>
   static std::vector<Packet> choose(const Kernels& kernels, const Make& make, const Fits& fits) {
     std::vector<Packet> packets;
@@ -139,8 +140,8 @@ class PacketCosts : public ContourTest {
   }
 };
 
-// Pixels at one height, spread so that to look for them together costs about as much as one by one: 2 % more for a
-// node, an edge or an area move the quotient by 0.002 and more, which in 0.001 has seven packets.
+// Pixels at one height, spread so that searching together costs about as much as searching one by one. If a node, an
+// edge or an area cost 2 % more, the quotient would move by at least 0.002, and an interval of 0.001 has seven packets.
 TEST_F(PacketCosts, PacketsArePartedWhereTheyWouldCostMoreThanTheirPixels) {
   const Kernels kernels(Stage(over_an_edge(), 1, 1, light_samples(1)), kSize);
   std::mt19937 random(4);
@@ -152,7 +153,7 @@ TEST_F(PacketCosts, PacketsArePartedWhereTheyWouldCostMoreThanTheirPixels) {
     return packet;
   };
   const auto packets = choose(kernels, make, [](const Odds& odds) {
-    return std::abs(odds.cost - 1) < 0.03 && std::abs(odds.cost - 1) > 1e-4;  // logarithms of floats
+    return std::abs(odds.cost - 1) < 0.03 && std::abs(odds.cost - 1) > 1e-4;  // the device takes logarithms of floats
   });
   ASSERT_EQ(packets.size(), std::size_t{kColumns} * kRows);
   const auto dear =
@@ -161,8 +162,8 @@ TEST_F(PacketCosts, PacketsArePartedWhereTheyWouldCostMoreThanTheirPixels) {
   EXPECT_EQ(parted(stage_of(kernels, packets), 0.5), static_cast<double>(dear));
 }
 
-// Pixels close together at several heights: 2 % of the chance that a texel lies between them, or of the texels that
-// may, are 0.007 of an even chance, which in 0.001 has two packets.
+// Pixels close together at several heights. If the chance that a texel lies between them, or the number of such texels,
+// were off by 2 %, an even chance would move by 0.007, and an interval of 0.001 has two packets.
 TEST_F(PacketCosts, PacketsArePartedWhereATexelMayLieBetweenTheirPixels) {
   const Kernels kernels(Stage(over_an_edge(), 1, 1, light_samples(1)), kSize);
   std::mt19937 random(5);
@@ -177,7 +178,7 @@ TEST_F(PacketCosts, PacketsArePartedWhereATexelMayLieBetweenTheirPixels) {
   };
   const auto packets = choose(kernels, make, [](const Odds& odds) {
     return odds.cost < 0.99 && std::abs(odds.apart - 0.5) < 0.1 &&
-           std::abs(odds.apart - 0.5) > 2e-3;  // powers of floats
+           std::abs(odds.apart - 0.5) > 2e-3;  // the device takes powers of floats
   });
   ASSERT_EQ(packets.size(), std::size_t{kColumns} * kRows);
   const auto apart =

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Backprojection of every texel of a light's maps, one by one, in double and without kernels: what backproject must
-// give where all casters are well in front of all receivers, so that which texels hide light is no question of
-// rounding.
+// compute where all casters are well in front of all receivers, so that rounding does not decide which texels hide
+// light.
 
 #include "tests/analytic/maps/centre_maps.hpp"
 
@@ -13,7 +13,7 @@ enum class Occluder { patch, quad, triangle };
 
 class PatchTwin {
  public:
-  /// Blocks of 2^level texels a side are one texel at their nearest depth.
+  /// With `level`, blocks of 2^level texels a side act as one texel at their nearest depth.
   PatchTwin(const render::Device& device, const Stage& stage, std::uint32_t size, std::uint32_t level = 0)
       : stage_(&stage),
         maps_(device, stage, size, {0, 0}, {.whole_light = true}),
@@ -32,8 +32,8 @@ class PatchTwin {
   [[nodiscard]] std::uint32_t faces() const { return maps_.fitted.faces; }
   using Polygon = std::vector<glm::dvec2>;
 
-  /// Farther from the light's plane than anything that the maps hold: else a texel may reach beyond the receiver's
-  /// height.
+  /// Whether the receiver is farther from the light's plane than anything in the maps; otherwise a texel may reach
+  /// beyond the receiver's height.
   [[nodiscard]] bool is_below_all_casters(std::size_t pixel) const {
     const double height = std::abs(maps_.basis.local(stage_->samples.p[pixel]).z);
     double deepest = 0;
@@ -46,8 +46,8 @@ class PatchTwin {
     return height > 1.05 * deepest;
   }
 
-  /// Returns the areas that bitmask's occluders cover in the light's plane, as convex polygons; patches are for windows
-  /// only.
+  /// Returns the areas that bitmask's occluders cover in the light's plane, as convex polygons; patches only for maps
+  /// of one window.
   [[nodiscard]] std::vector<Polygon> occluders(std::size_t pixel, Occluder kind) const {
     const glm::dvec3 d = maps_.basis.local(stage_->samples.p[pixel]);
     const maps::gpu::SideView& side = maps_.fitted.views.front().side[d.z < 0 ? 1 : 0];
@@ -92,8 +92,8 @@ class PatchTwin {
     return found;
   }
 
-  /// Returns the least distance of a point from the sides of a convex polygon of either winding; negative if it is
-  /// outside.
+  /// Returns the smallest distance of a point from the sides of a convex polygon of either winding; negative if the
+  /// point is outside.
   static double inside(const Polygon& polygon, const glm::dvec2& at) {
     double least = 1e30, most = -1e30;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -110,7 +110,7 @@ class PatchTwin {
     return glm::dvec2(maps_.basis.local(stage_->light.points[j]));
   }
 
-  /// 1 − the sum of all patches' shares of a rectangle light.
+  /// Returns 1 − the sum of all patches' shares of a rectangle light.
   [[nodiscard]] double visibility(std::size_t pixel, Fill fill) const {
     const glm::dvec3 d = maps_.basis.local(stage_->samples.p[pixel]);
     const maps::gpu::LightView& view = maps_.fitted.views.front();
@@ -141,7 +141,7 @@ class PatchTwin {
     return {lower, static_cast<double>(block_) * (upper - lower) / static_cast<double>(maps_.size), axes[number]};
   }
 
-  /// Depth along the face's axis if the texel hides light from e, else 0.
+  /// Returns the depth along the face's axis if the texel hides light from e, otherwise 0.
   [[nodiscard]] double hiding(const maps::gpu::SideView& side, std::uint32_t number, const glm::dvec3& e,
                               std::int64_t x, std::int64_t y) const {
     const auto size = static_cast<std::int64_t>(size_);
@@ -156,7 +156,7 @@ class PatchTwin {
     return found * direction.z < e.z ? found : 0;
   }
 
-  /// Returns the point where the line from e through the point of a face meets the light's plane.
+  /// Returns where the line from e through a face's point at this depth meets the light's plane.
   static glm::dvec2 on_light(const Face& face, const glm::dvec3& e, const glm::dvec2& at, double depth) {
     const glm::dvec3 q = depth * (at.x * face.axes[0] + at.y * face.axes[1] + face.axes[2]);
     const glm::dvec3 s = e + (q - e) * (e.z / (e.z - q.z));
@@ -172,7 +172,7 @@ class PatchTwin {
     Polygon polygon{on_light(face, e, from, depth), on_light(face, e, {to.x, from.y}, depth),
                     on_light(face, e, to, depth), on_light(face, e, {from.x, to.y}, depth)};
     if (fill != Fill::none) {
-      // Windows only: an axis-parallel rectangle.
+      // Only for maps of one window: an axis-parallel rectangle.
       glm::dvec2 lower = polygon[0];
       const auto reach = [&](int dx, int dy) {
         const double neighbour = hiding(side, number, e, std::int64_t{x} + dx, std::int64_t{y} + dy);
@@ -215,7 +215,7 @@ class PatchTwin {
 
   const Stage* stage_;
   CentreMaps maps_;
-  std::uint32_t block_, size_;  ///< texels of the map in one a side, and how many of those there are
+  std::uint32_t block_, size_;  ///< map texels per side of a block, and blocks per side of the map
   std::vector<float> texels_;
 };
 

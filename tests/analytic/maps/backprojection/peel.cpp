@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// backproject-peel: layers, midpoints and strides.
+// Tests backproject-peel: layers, midpoints and strides.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 #include "tests/analytic/maps/parallel_square.hpp"
@@ -10,7 +10,8 @@ namespace {
 
 using visibility::MethodOptions;
 
-/// Errors against the exact area: the mean, and the share of the umbra's pixels that are lit by more than 0.05.
+/// Errors against the exact area; `leak` and `dark`: shares of the umbra's pixels above 0.05 and of lit pixels below
+/// 0.95.
 struct Quality {
   double bias = 0, rmse = 0, leak = 0, dark = 0;
 };
@@ -51,7 +52,7 @@ class MapsPeel : public MapsTest {
   }
 };
 
-// Peel with one layer and all samples is backproject without fill.
+// backproject-peel with one layer and all samples is backproject without fill.
 TEST_F(MapsPeel, OneLayerIsBackproject) {
   for (const scenes::Scene& scene : {sphere_over_floor(), square_above_plate(), oblique_quad(0.4)}) {
     const Stage stage = on_floor(scene, 12, light_samples(1));
@@ -63,7 +64,8 @@ TEST_F(MapsPeel, OneLayerIsBackproject) {
   EXPECT_EQ(peel(stage, {{"layers", "3"}, {"samples", "0"}}).visibility, project(stage, {{"fill", "none"}}).visibility);
 }
 
-// However many texels one stands for, the blocks cover the kernel: under a plate that covers it all is hidden.
+// However many texels one sample stands for, the blocks cover the kernel: under a plate that covers the kernel all is
+// hidden.
 TEST_F(MapsPeel, AStrideLosesNoCoverage) {
   scenes::Scene scene = parallel_square();
   scene.objects[0].casts_shadow = false;
@@ -72,9 +74,8 @@ TEST_F(MapsPeel, AStrideLosesNoCoverage) {
     const Masks found = peel(stage, {{"samples", samples}}, "128");
     std::size_t umbra = 0;
     for (std::size_t i = 0; i < stage.samples.size(); ++i) {
-      // A block may be as wide as the kernel: only where the whole kernel is under the plate does each block's texel
-      // lie there. The umbra is ±1/3; the kernel is 0.2 wide of a plate of 0.667: as long as p is within 1/3 less a
-      // texel.
+      // A block may be as wide as the kernel: each block's texel is under the plate only where the whole kernel is. The
+      // umbra is ±1/3 on the map; the kernel is 0.2 wide, the plate 0.667: p must be within 1/3 less a texel.
       const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
       if (std::max(std::abs(p.x), std::abs(p.z)) > 1 - 0.1) continue;
       ++umbra;
@@ -84,8 +85,8 @@ TEST_F(MapsPeel, AStrideLosesNoCoverage) {
   }
 }
 
-// Light between a plate and a square above it, which the plate's one patch in the square's shadow does not stop: gone
-// with the second layer, and with filled gaps, which shade too much elsewhere.
+// Light gets between a plate and a square above it, because the plate has no texels in the square's shadow. The leak is
+// gone with the second layer, and with filled gaps, which shade too much elsewhere.
 TEST_F(MapsPeel, TheSecondLayerClosesTheGapUnderASquare) {
   const Stage stage = on_floor(square_above_plate(), 24, light_samples(1));
   const Masks truth = exact(stage);
@@ -103,7 +104,7 @@ TEST_F(MapsPeel, TheSecondLayerClosesTheGapUnderASquare) {
   EXPECT_LT(edges.bias, none.bias);
 }
 
-// Gaps of a sphere's map: its depth grows outward everywhere.
+// In a sphere's map depth grows outward everywhere, which leaves gaps.
 TEST_F(MapsPeel, FillClosesASpheresGapsAndShadesTooMuchTheMoreTheFiner) {
   const Stage stage = on_floor(sphere_over_floor(), 20, light_samples(1));
   const Masks truth = exact(stage);
@@ -118,19 +119,20 @@ TEST_F(MapsPeel, FillClosesASpheresGapsAndShadesTooMuchTheMoreTheFiner) {
     EXPECT_LT(edges.bias, before + 0.002) << "more overshadowing at size " << size;
     before = edges.bias;
   }
-  // The back of a sphere: no gaps, but overlaps. Where it misses the light and the front does not, both are added up.
+  // The back of a sphere has overlaps instead of gaps. Where the back misses the light and the front does not, both are
+  // added.
   const Masks back = peel(stage, {{"samples", "0"}, {"select", "deepest"}}, "128");
   const Quality deepest = quality(stage, truth, back, "peel, deepest"),
                 some = quality(stage, truth, peel(stage, {{"samples", "121"}, {"select", "deepest"}}, "128"),
                                "peel, deepest, 121"),
                 both = quality(stage, truth, peel(stage, {{"samples", "0"}}, "128"), "peel, contribution");
-  EXPECT_NEAR(some.rmse, deepest.rmse, 0.01);  // fewer samples are not worse here: 0.0594 and 0.0610
+  EXPECT_NEAR(some.rmse, deepest.rmse, 0.01);  // here fewer samples are not worse: 0.0594 and 0.0610
   EXPECT_LT(both.bias, deepest.bias);
   EXPECT_EQ(deepest.leak, 0);
 }
 
-// A sheet that is oblique and turned in its map: its gaps are diagonal, too, and gaps and overlaps of a sum partly
-// cancel, which a union's do not.
+// The gaps of an oblique sheet that is turned in its map are diagonal, too. In a sum gaps and overlaps partly cancel;
+// in a union they do not.
 TEST_F(MapsPeel, AnObliqueSheetLeaksThroughDiagonals) {
   const Stage stage = on_floor(oblique_quad(std::numbers::pi / 4), 20, light_samples(256));
   const Masks truth = exact(stage);
@@ -150,7 +152,7 @@ TEST_F(MapsPeel, AnObliqueSheetLeaksThroughDiagonals) {
   EXPECT_LT(diagonal.bias, edges.bias) << "a sum overlaps twice";
 }
 
-// Texels of a texture weigh what patches cover: the error is about that of a white light.
+// A texture's texels weight what patches cover: the error is about that of a white light.
 TEST_F(MapsPeel, ATexturedLightIsWeighedTexelByTexel) {
   scenes::Scene scene = parallel_square();
   scene.objects[0].casts_shadow = false;
@@ -167,13 +169,13 @@ TEST_F(MapsPeel, ATexturedLightIsWeighedTexelByTexel) {
   texture.texels = {{1, 1, 1}, {8, 8, 8}, {3, 3, 3}, {0, 0, 0}, {5, 5, 5}, {9, 9, 9}};
   scene.lights.front().texture = texture;
   const auto textured = error();
-  // An edge that is off by a share of the light's width moves V by that times the brightest column over the mean, 13
-  // / 8.67.
+  // An edge that is off by a share of the light's width moves V by that share times the brightest column over the mean,
+  // 13 / 8.67.
   EXPECT_LT(textured.first, 2 * white.first);
   EXPECT_LT(textured.second, 2 * white.second + 0.01);
 }
 
-// A larger bias lights what shades itself, and, where it is as large as casters are high, what they shade where they
+// A larger bias lights what would shade itself. A bias as large as casters are high also lights the shadow where they
 // stand: 32 texels of 0.04, for a ball 1.2 high.
 TEST_F(MapsPeel, TheBiasTradesAcneForLeaks) {
   scenes::Scene scene;
@@ -193,7 +195,8 @@ TEST_F(MapsPeel, TheBiasTradesAcneForLeaks) {
   EXPECT_GT(found[2].leak, found[1].leak + 0.1);
 }
 
-// Bounding spheres of square patches: π/2 times their area where nothing else is near, and the light is their disk.
+// Bounding spheres of square patches cover π/2 times the patches' area where no other patch is near; the light is
+// replaced by a disk of equal area.
 TEST_F(MapsPeel, BoundingSpheresCoverHalfPiAsMuch) {
   scenes::Scene scene = bare_floor(1, 0.5);
   add_quad(scene, {0, 1, 0}, {0.05, 0, 0}, {0, 0, -0.05}).receives_shadow = false;
@@ -209,12 +212,14 @@ TEST_F(MapsPeel, BoundingSpheresCoverHalfPiAsMuch) {
   }
   ASSERT_GT(count, 0U);
   fmt::print("spheres cover {:.3f} of what patches do, {} pixels\n", ratio / static_cast<double>(count), count);
-  // The light's cap of the disk's area, atan(1.128 / 5), is 2 π (1 − cos) = 0.1541 sr of the square's 4 / 25 = 0.16 by
-  // area at its middle: the ratio is larger by 0.16 / 0.1541, and smaller by the patch's own cosine, none here.
+  // Seen from below, the light's disk has the angle atan(1.128 / 5) and the solid angle 2 π (1 − cos) = 0.1541 sr,
+  // where the square's area at its middle gives 4 / 25 = 0.16. The ratio is larger by 0.16 / 0.1541, and smaller by the
+  // patch's cosine, which is 1 here.
   EXPECT_NEAR(ratio / static_cast<double>(count), std::numbers::pi / 2 * 0.16 / 0.1541, 0.03);
 }
 
-// A closed box whose own surface is asked without bias: the middle between its top and bottom is far from both.
+// A closed body whose own surface is tested without bias: the midpoint between its near and far surfaces is away from
+// both.
 TEST_F(MapsPeel, MidpointsRemoveAcneOfClosedSolids) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -223,8 +228,8 @@ TEST_F(MapsPeel, MidpointsRemoveAcneOfClosedSolids) {
   scene.cameras.push_back(camera({0, 4, 2}, {0, 1, 0}, 50));
   const Stage stage(scene, 32, 32, light_samples(1));
   const Masks truth = exact(stage);
-  // Pixels of the ball alone count: the floor is one open sheet, whose shadow begins at its only surface, and the bias
-  // there is 0, too.
+  // Only pixels of the ball count: the floor is one open sheet, whose shadow begins at its only surface, and the bias
+  // is 0 there, too.
   Quality first, midpoint;
   const Masks with_first = project(stage, {{"fill", "none"}, {"bias", "0"}, {"depth", "first"}}),
               with_midpoint = project(stage, {{"fill", "none"}, {"bias", "0"}, {"depth", "midpoint"}});
@@ -243,7 +248,7 @@ TEST_F(MapsPeel, MidpointsRemoveAcneOfClosedSolids) {
   EXPECT_LE(midpoint.dark, 0.1 * first.dark + 1);
 }
 
-// A wall beside a lit floor: it is in the map, and in no pyramid of the light over the floor.
+// A wall beside a lit floor: it is in the map, but in no pyramid from the floor to the light.
 TEST_F(MapsPeel, WhatIsBesideTheLightsPyramidShadesNothing) {
   scenes::Scene scene = bare_floor(0.5, 1);
   add_quad(scene, {1.2, 2, 0}, {0, 2, 0}, {0, 0, 1.2}).receives_shadow = false;

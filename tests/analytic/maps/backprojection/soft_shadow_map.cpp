@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft-shadow-map against closed forms, and its two forms against each other and backproject.
+// Tests soft-shadow-map against closed forms, and its two forms against each other and against backproject.
 
 #include "tests/analytic/maps/backprojection/soft_shadow_map.hpp"
 
@@ -15,9 +15,9 @@
 namespace penumbra::tests {
 namespace {
 
-// A parallel rectangle, and a small one beside it so that no texel's border lies on an edge. On either axis each edge
-// is off by half a texel at most. Projected from the receiver onto the light, a length in the map's coordinates x / z
-// grows by `to_light` = 3 · 5 / 2: the rectangles are at depth 3, the receivers at depth 5, 2 apart.
+// A parallel rectangle, and a small one beside it so that no texel border lies on an edge. On either axis each edge is
+// off by half a texel at most. Projected from the receiver onto the light, a length in the map's coordinates x / z
+// grows by `to_light` = 3 · 5 / 2, because the rectangles are at depth 3 and the receivers at depth 5, 2 apart.
 TEST_F(SoftShadowMap, AParallelRectangleIsOffByNoMoreThanItsTexels) {
   struct Rectangle {
     glm::dvec2 center, half;
@@ -27,7 +27,7 @@ TEST_F(SoftShadowMap, AParallelRectangleIsOffByNoMoreThanItsTexels) {
   for (const auto& [center, half] : rectangles) {
     add_quad(scene, {center.x, 2, center.y}, {half.x, 0, 0}, {0, 0, half.y});
   }
-  // The places that the receivers' map holds: 50 texels over +-4/5 with one to spare all around.
+  // The receivers' map: 50 texels over +-4/5, and one more on every side.
   constexpr int kReceivers = 52;
   std::vector<glm::dvec2> places;
   for (int i = 5; i < 45; ++i) {
@@ -45,7 +45,7 @@ TEST_F(SoftShadowMap, AParallelRectangleIsOffByNoMoreThanItsTexels) {
       twice["passes"] = "2";
       EXPECT_EQ(found.picture.visibility, soft(stage, twice).picture.visibility) << "a flat sheet has one surface";
     }
-    // Texels: over the x of both rectangles, and over the z of the larger one; at depth 3 of 5.
+    // Widths of texels: over the x of both rectangles, and over the z of the larger one, at depth 3 of 5.
     const double to_light = 3.0 * 5.0 / 2.0, across = (2.337 + 0.9) / 3 / (size - 2), along = 1.4 / 3 / (size - 2);
     const double bound = 2 * (across + along) / 2 * to_light / 2 * 2;
     double worst = 0;
@@ -61,16 +61,16 @@ TEST_F(SoftShadowMap, AParallelRectangleIsOffByNoMoreThanItsTexels) {
     }
     fmt::print("{} texels: off by {:.4f} of {:.4f}\n", size, worst, bound);
     EXPECT_LE(worst, bound + 2.0 / 256 * bound + 1e-5);  // corners snap to 1/256 of a texel
-    before = worst;  // spikes with where texels' borders fall: no two sizes need to agree
+    before = worst;  // errors jump with the places of texel borders, so two sizes need not be in order
   }
   EXPECT_LT(before, 0.01);
 }
 
-// The paper's equation 1: two neighbouring texels at different depths, seen from beside their common border, part or
-// overlap.
+// The paper's equation 1: two neighbouring texels at different depths, seen from beside their common border, leave a
+// gap or overlap.
 TEST_F(SoftShadowMap, DepthThatGrowsOutwardLeavesAGapAndDepthThatShrinksAnOverlap) {
   scenes::Scene scene = floor_and_light(1);
-  scene.objects[0].casts_shadow = false;              // so that it is the receiver, though the smaller one
+  scene.objects[0].casts_shadow = false;              // makes it the receiver, though it is the smaller object
   add_quad(scene, {-6, 3, 0}, {6, 0, 0}, {0, 0, 9});  // x < 0, at depth 2
   add_quad(scene, {6, 2, 0}, {6, 0, 0}, {0, 0, 9});   // x > 0, at depth 3
   std::vector<glm::dvec2> places;
@@ -81,16 +81,16 @@ TEST_F(SoftShadowMap, DepthThatGrowsOutwardLeavesAGapAndDepthThatShrinksAnOverla
     // x of the border on the light: -alpha f(z), alpha = x / 5; f = z 5 / (5 - z).
     const double near = std::min(-places[i].x / 5 * (2.0 * 5 / 3), 1.0),
                  far = std::min(-places[i].x / 5 * (3.0 * 5 / 2), 1.0);
-    const double gap = far - near;  // what of it is on the light
+    const double gap = far - near;  // the gap's part on the light
     EXPECT_NEAR(static_cast<double>(found.picture.visibility[i]), std::clamp(gap / 2, 0.0, 1.0), 2e-4) << places[i].x;
   }
 }
 
-// Sums in 16-bit floats stop where half a unit in the last place is more than a texel: kernels of 32 texels and fewer
-// are safe.
+// Sums in 16-bit floats stop growing where half a unit in the last place is more than a texel: kernels of 32 texels or
+// fewer are safe.
 TEST_F(SoftShadowMap, SixteenBitSumsStopAsTheKernelGrows) {
-  // One plate over all, depth 2.5 of 5; tangents +-2 in 400 texels, and a kernel of 2 half (1/2.5 - 1/5) / 0.01 = 40
-  // half.
+  // One plate over everything, at depth 2.5 of 5. Tangents of +-2 in 400 texels give kernels 2 half (1/2.5 - 1/5) /
+  // 0.01 = 40 half texels wide.
   for (const auto& [width, sum] : {std::pair(32, 1.0), std::pair(40, 0.915), std::pair(64, 0.5), std::pair(90, 0.5),
                                    std::pair(91, 0.25), std::pair(128, 0.125), std::pair(256, 0.031)}) {
     scenes::Scene scene = floor_and_light(width / 40.0);
@@ -136,8 +136,8 @@ TEST_F(SoftShadowMap, ScatteredAndGatheredSumsAreTheSameBits) {
   EXPECT_THROW(maps::make_soft_shadow_map(device(), {{"form", "scatter"}, {"precision", "fp16"}}), UsageError);
 }
 
-// The reach of an occluder's texel ends 160 texels of the receivers' map from it: 2 % of that are more than the two
-// that rounding adds.
+// An occluder's texel reaches 160 texels of the receivers' map: 2 % of that is more than the two texels that are added
+// for rounding.
 TEST_F(SoftShadowMap, AWideKernelIsScatteredWhole) {
   scenes::Scene scene = floor_and_light(4);
   add_quad(scene, {0, 2.5, 0}, {0.5, 0, 0}, {0, 0, 0.5});
@@ -169,12 +169,12 @@ TEST_F(SoftShadowMap, WorkDependsOnTexelsAndNotOnTriangles) {
   EXPECT_EQ(a.patches, b.patches);
   EXPECT_EQ(a.fragments, b.fragments);
   EXPECT_EQ(a.picture.visibility, b.picture.visibility);
-  // Occluder texels times receiver texels: sixteen times for both maps twice as large.
-  const Run twice = work(whole, "62", "126");  // 30 and 62 texels of contents, then 60 and 124
+  // The work is occluder texels times receiver texels: sixteen times as much with both maps twice as large.
+  const Run twice = work(whole, "62", "126");  // 30 and 62 texels without their margins, then 60 and 124
   const double ratio = static_cast<double>(twice.fragments) / static_cast<double>(a.fragments);
   fmt::print("work of maps twice as large: {:.2f}\n", ratio);
-  // A patch reaches its own width p and the kernel's 2 k: four times the patches, each on 4 ((p/2 + 2k) / (p + 2k))^2
-  // as many.
+  // A patch reaches its own width p and the kernel's 2 k: there are four times as many patches, and each covers 4 ((p/2
+  // + 2k) / (p + 2k))^2 times as many texels.
   const double p = 2.0 / 3 / 30, k = 0.5 * (1.0 / 3 - 1.0 / 5),
                expected = 16 * std::pow((p / 2 + 2 * k) / (p + 2 * k), 2);
   EXPECT_NEAR(ratio, expected, 0.03 * expected);
@@ -190,7 +190,7 @@ TEST_F(SoftShadowMap, ATinyLightCastsTheHardShadow) {
     if (!on_object(stage, i, 0)) continue;
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
     const glm::dvec2 off(std::abs(p.x - 0.1 * 5 / 3) - 5.0 / 3, std::abs(p.z) - 0.7 * 5 / 3);
-    const double texel = 8.0 / 510 + 10.0 / 3 / 254;  // of both maps, on the floor
+    const double texel = 8.0 / 510 + 10.0 / 3 / 254;  // the texels of both maps, on the floor
     if (std::abs(off.x) < texel || std::abs(off.y) < texel) continue;
     const bool shaded = off.x < 0 && off.y < 0;
     dark += shaded ? 1 : 0;
@@ -199,7 +199,7 @@ TEST_F(SoftShadowMap, ATinyLightCastsTheHardShadow) {
   EXPECT_GT(dark, 50U);
 }
 
-/// Places that the receivers' map of a floor of half-size 4, 5 below the light, has texels at.
+/// Places of the texels of a receivers' map over a floor of half-size 4, 5 below the light.
 std::vector<glm::dvec2> texel_centres(int size, int step) {
   std::vector<glm::dvec2> places;
   for (int i = 2; i < size - 2; i += step) {
@@ -210,9 +210,9 @@ std::vector<glm::dvec2> texel_centres(int size, int step) {
   return places;
 }
 
-// The sum at a texel of the receivers' map is the one that backproject makes of the same map: only the loops are
-// exchanged. Four small boards make the occluders' window that of the receivers. Any planar light, plain or with a
-// texture; and both forms have the same bits.
+// The sum at a texel of the receivers' map equals backproject's for the same map: only the order of the loops differs.
+// Four small boards make the occluders' window equal to the receivers'. This holds for any planar light, with or
+// without a texture; and gather and scatter give the same bits.
 TEST_F(SoftShadowMap, AtATexelOfTheReceiversItIsBackproject) {
   scenes::Scene scene = ball(0.5);
   scene.objects[0].casts_shadow = false;
@@ -220,7 +220,7 @@ TEST_F(SoftShadowMap, AtATexelOfTheReceiversItIsBackproject) {
   for (const double x : {-1, 1}) {
     for (const double z : {-1, 1}) add_quad(scene, {1.9 * x, 2.5, 1.9 * z}, {0.1, 0, 0}, {0, 0, 0.1});
   }
-  // The light's centroid is above the middle, where the maps' texels are.
+  // The light's centroid must be above the middle, where the maps' texels are.
   const std::vector<decltype(scenes::AreaLight::shape)> shapes{
       scene.lights.front().shape, scenes::Disk{{0, 5, 0}, {0, -1, 0}, 0.55},
       scenes::Ellipse{{0, 5, 0}, {0.6, 0, 0}, {0.1, 0, 0.3}}, scenes::Rectangle{{0, 5, 0}, {0.5, 0, 0}, {0.2, 0, 0.5}},
@@ -229,7 +229,7 @@ TEST_F(SoftShadowMap, AtATexelOfTheReceiversItIsBackproject) {
     scene.lights.front().shape = shapes[k % shapes.size()];
     const Stage stage = on_floor(scene, texel_centres(66, 3));
     visibility::Light light = stage.light;
-    if (k == shapes.size()) {  // the first again, with a texture
+    if (k == shapes.size()) {  // the first shape again, with a texture
       light.texture = visibility::LightTexture{.width = 2,
                                                .height = 2,
                                                .colors = std::vector<glm::vec3>(4, glm::vec3(1)),
@@ -259,7 +259,7 @@ TEST_F(SoftShadowMap, AtATexelOfTheReceiversItIsBackproject) {
 }
 
 TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) {
-  // The floor is the larger one; a wheel of four boards shades it and not itself.
+  // The floor is the larger object and so the receiver; the ball shades it and not itself.
   const Stage stage(ball(0.5), 48, 48, light_samples(1));
   const Run found = soft(stage, {{"receiverSize", "64"}});
   std::size_t lit = 0, half = 0;
@@ -278,7 +278,7 @@ TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) 
   }
   EXPECT_GT(lit, 20U);
   EXPECT_GT(half, 5U);
-  // A table that only receives is the receiver, however small; otherwise the floor shades it.
+  // A table that receives but does not cast is the receiver, however small; the floor then shades it.
   scenes::Scene table = ball(0.5);
   add_quad(table, {0, -1, 0}, {0.5, 0, 0}, {0, 0, 0.5}).casts_shadow = false;
   table.cameras.front() = camera({0, -0.5, 1.5}, {0, -1, 0}, 60);
@@ -287,13 +287,14 @@ TEST_F(SoftShadowMap, OccludersSeeWhatIsAboveTheirHorizonAndReceiversAreChosen) 
   std::size_t dark = 0;
   for (std::size_t i = 0; i < below.samples.size(); ++i) {
     if (!on_object(below, i, 2)) continue;
-    EXPECT_LT(under.picture.visibility[i], 0.1F);  // where the sphere hides the floor from the light, there are gaps
+    EXPECT_LT(under.picture.visibility[i], 0.1F);  // the floor's map has gaps where the sphere hides the floor
     ++dark;
   }
   EXPECT_GT(dark, 5U);
 }
 
-// Another method answers where the paper does not: occluders have that method's bytes, other pixels this method's own.
+// With self=backproject another method computes the pixels that the paper does not cover: occluders have that method's
+// bytes, other pixels this method's own.
 TEST_F(SoftShadowMap, OnOccludersBackprojectMayAnswer) {
   scenes::Scene scene = ball(0.5);
   add_quad(scene, {0.3, 3.6, 0.3}, {0.4, 0, 0}, {0, 0, 0.4});  // shades the ball
@@ -313,8 +314,8 @@ TEST_F(SoftShadowMap, OnOccludersBackprojectMayAnswer) {
   EXPECT_EQ(tiled.picture.visibility, both.picture.visibility);
 }
 
-// A plate of half-size 1 a little above the floor, at depth 5 − g of 5: of its 64 texels each is 2 / 64 (5 − g) wide,
-// and the bias forgives so many times 5 of that.
+// A plate of half-size 1 at a small gap g above the floor, at depth 5 − g of 5. Each of its 64 texels is 2 / 64 (5 − g)
+// wide, and the bias forgives that width times 5 and times the number of texels.
 TEST_F(SoftShadowMap, TheBiasForgivesSoManyTexels) {
   constexpr double kTexels = 3;
   for (const double share : {0.985, 1.015}) {
@@ -344,7 +345,7 @@ TEST_F(SoftShadowMap, WhereOccludersHaveNoShadowsItSaysSo) {
   EXPECT_EQ(warning(on_floor(ball(0.5), {{0, 0}, {1, 0}}), {}), "") << "no pixel shows the ball";
 }
 
-/// An object without area that casts nothing is not the receiver that all others shade.
+/// An object without area that casts nothing must not become the receiver that all others shade.
 TEST_F(SoftShadowMap, WhatIsNowhereDecidesNothing) {
   scenes::Scene with = ball(0.5);
   add_object(with, "line", {{glm::dvec3(0), glm::dvec3(0.25), glm::dvec3(0.5)}}).casts_shadow = false;
@@ -361,7 +362,7 @@ TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
   inside.lights.push_back(ceiling_light(0, 0.5));
   inside.lights.back().two_sided = true;
   inside.cameras.push_back(camera({0.5, 0.5, 0.5}, {0, -1, 0}, 90));
-  add_quad(room, {4, 6, 0}, {0, 6, 0}, {0, 0, 6});  // a wall up to beyond the light, larger than the floor
+  add_quad(room, {4, 6, 0}, {0, 6, 0}, {0, 0, 6});  // a wall that reaches above the light, larger than the floor
   for (const scenes::Scene& scene : {nothing, crossing, touching, inside, room}) {
     const Stage stage(scene, 16, 16, light_samples(1));
     for (const char* size : {"8", "48"}) {
@@ -382,7 +383,8 @@ TEST_F(SoftShadowMap, DegenerateScenesHaveADefinedV) {
   EXPECT_THROW(method->prepare_light(round.light), InputError);
 }
 
-// Figure 11b: one pass with the bottom of what casts, its farthest surfaces. Two passes take the smaller V of both.
+// Figure 11b: one pass with the bottom patches, the farthest surfaces of casters. Two passes take the smaller V of
+// both.
 TEST_F(SoftShadowMap, BottomPatchesAreTheSecondPassAlone) {
   const Stage stage = tests::on_floor(box_over_floor(0.3), 16, light_samples(1));
   const MethodOptions options{{"size", "48"}, {"receiverSize", "48"}, {"filter", "nearest"}};

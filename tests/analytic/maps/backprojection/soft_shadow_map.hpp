@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Support for tests of soft-shadow-map: its pictures with their counters, floors with a light above, the papers'
-// measure.
+// Support for tests of soft-shadow-map: its pictures with their counters, floors with a light above, and the paper's
+// measure of error.
 
 #include "tests/analytic/maps/parallel_square.hpp"
 
@@ -51,7 +51,7 @@ class SoftShadowMap : public MapsTest {
                    return samples;
                  });
   }
-  /// A floor of half-size 4, the light of half-size `half` 5 above it.
+  /// A floor of half-size 4, and 5 above it a light of half-size `half`.
   static scenes::Scene floor_and_light(double half) {
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, -4});
@@ -65,7 +65,7 @@ class SoftShadowMap : public MapsTest {
     return scene;
   }
   /// The measure of the paper's section 5.2.1 over the floor: the sum of abs(V - V_ref) over the number of pixels in
-  /// umbra or penumbra; and the areas of the umbrae, found and true.
+  /// umbra or penumbra. Also the areas of the umbrae, found and true.
   struct Measure {
     double error, umbra, true_umbra;
   };

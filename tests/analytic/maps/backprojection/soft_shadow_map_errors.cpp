@@ -12,15 +12,15 @@
 namespace penumbra::tests {
 namespace {
 
-/// Options with a quarter of the default's texels for receivers, too: these tests find the same with them in a quarter
-/// of the time.
+/// Options with a quarter of the default number of receiver texels: the tests' findings are the same, in a quarter of
+/// the time.
 MethodOptions few_receivers(MethodOptions options = {}) {
   options["receiverSize"] = "128";
   return options;
 }
 
-// Solids: the second pass adds what the centre does not see of them, at every pixel, and costs about as much as the
-// first.
+// For solids the second pass adds what the light's centre does not see of them, at every pixel, and costs about as much
+// as the first.
 TEST_F(SoftShadowMap, TwoPassesAreDarkerEverywhereAndNearerToTheTruthForSolids) {
   double small_light = 0;
   for (const double half : {0.1, 0.25, 0.5, 1.0}) {
@@ -35,7 +35,7 @@ TEST_F(SoftShadowMap, TwoPassesAreDarkerEverywhereAndNearerToTheTruthForSolids) 
     fmt::print("light half {}: error {:.4f} in one pass, {:.4f} in two; work {:.2f}; umbra {} and {} of {}\n", half,
                first.error, second.error, work, first.umbra, second.umbra, first.true_umbra);
     EXPECT_LT(second.error, first.error);
-    // Twice the patches; but those of the far side have smaller penumbrae.
+    // There are twice as many patches, but those of the far side have smaller penumbrae.
     EXPECT_EQ(two.patches, 2 * one.patches);
     EXPECT_GT(work, 1.0);
     EXPECT_LT(work, 2.0);
@@ -43,14 +43,14 @@ TEST_F(SoftShadowMap, TwoPassesAreDarkerEverywhereAndNearerToTheTruthForSolids) 
     if (half == 0.5) {
       EXPECT_GT(first.error, 2 * small_light);
     }
-    if (half == 0.25) {  // umbrae are neither dramatically over- nor underestimated
+    if (half == 0.25) {  // umbrae are not grossly over- or underestimated
       EXPECT_GT(second.umbra, 0.8 * second.true_umbra);
       EXPECT_LT(second.umbra, 1.25 * second.true_umbra);
     }
   }
 }
 
-// A thin solid: both sides at about the same depth, and twice the work.
+// In a thin solid both sides are at about the same depth: two passes do twice the work.
 TEST_F(SoftShadowMap, TwoPassesOverAThinSolidCostTwice) {
   scenes::Scene scene = floor_and_light(0.5);
   add_quad(scene, {0, 2, 0}, {1, 0, 0}, {0, 0, 1});
@@ -63,7 +63,7 @@ TEST_F(SoftShadowMap, TwoPassesOverAThinSolidCostTwice) {
   EXPECT_LT(work, 2.0);
 }
 
-// The error that remains beyond some resolution is that of the silhouette; it grows as the solid nears the light.
+// Beyond some resolution the remaining error comes from the silhouette; it grows as the solid approaches the light.
 TEST_F(SoftShadowMap, TheErrorStopsFallingWithResolutionAndGrowsTowardTheLight) {
   const Stage stage(ball(0.5), 64, 64, light_samples(1));
   const Masks truth = exact(stage);
@@ -83,7 +83,7 @@ TEST_F(SoftShadowMap, TheErrorStopsFallingWithResolutionAndGrowsTowardTheLight) 
   }
 }
 
-// The paper's figure 23: small lights need large maps, for large ones small maps do as well.
+// The paper's figure 23: small lights need large maps; for large lights small maps are good enough.
 TEST_F(SoftShadowMap, LargeLightsDoWithSmallMaps) {
   double last = 1e9;
   for (const double half : {0.05, 0.25, 1.0}) {
@@ -99,13 +99,13 @@ TEST_F(SoftShadowMap, LargeLightsDoWithSmallMaps) {
   }
 }
 
-// Errors of aligned edges add up, those of others cancel (5.1.1).
+// Errors of aligned edges add up, those of other edges cancel (5.1.1).
 TEST_F(SoftShadowMap, ATurnedSquareIsNearerToTheTruthThanTheWorstAlignedOne) {
   const auto error = [&](double degrees, double shift) {
     const double angle = degrees * std::numbers::pi / 180;
     scenes::Scene scene = floor_and_light(0.5);
     add_quad(scene, {shift, 2, shift}, {std::cos(angle), 0, std::sin(angle)}, {-std::sin(angle), 0, std::cos(angle)});
-    add_quad(scene, {-2.2, 2, -2.2}, {0.1, 0, 0}, {0, 0, 0.1});  // holds the window
+    add_quad(scene, {-2.2, 2, -2.2}, {0.1, 0, 0}, {0, 0, 0.1});  // keeps the window the same
     add_quad(scene, {2.2, 2, 2.2}, {0.1, 0, 0}, {0, 0, 0.1});
     const Stage stage(scene, 64, 64, light_samples(1));
     return measure(stage, soft(stage, {{"size", "42"}, {"receiverSize", "512"}}).picture, exact(stage)).error;

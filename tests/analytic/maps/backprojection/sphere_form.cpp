@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// backproject with form=sphere: bounding spheres of texels before a sphere or the disk of the light's area that faces
-// the receiver, against every texel in double, against closed forms and against rays.
+// Tests backproject with form=sphere (bounding spheres of texels in front of a sphere, or of a disk of the light's area
+// that faces the receiver) against all texels in double, closed forms and rays.
 
 #include "render/compute_pass.hpp"
 #include "tests/analytic/maps/backprojection/lens.comp.spv.hpp"
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// The solid angle that two cones around directions `apart` share, half as wide as a and b (Tovchigrechko and Vakser
-/// 2001).
+/// The solid angle that two cones share; a and b are their half-angles, `apart` is the angle between their axes
+/// (Tovchigrechko and Vakser 2001).
 double shared_cap(double a, double b, double apart) {
   if (apart >= a + b) return 0;
   if (apart <= std::abs(a - b)) return 2 * kPi * (1 - std::cos(std::min(a, b)));
@@ -27,13 +27,13 @@ double shared_cap(double a, double b, double apart) {
               cb * angle((ca - cd * cb) / (sd * sb)));
 }
 
-/// Returns the area of a disk of radius 1 on one side of a line, t from its middle.
+/// Returns the share of a disk of radius 1 on one side of a line at distance t from its middle.
 double segment(double t) {
   t = std::clamp(t, -1.0, 1.0);
   return 0.5 + (t * std::sqrt(1 - t * t) + std::asin(t)) / kPi;
 }
 
-/// All texels of a light's maps of one face, one by one.
+/// Sums over all texels of a light's maps of one face, one by one.
 class SphereTwin {
  public:
   SphereTwin(const render::Device& device, const Stage& stage, std::uint32_t size)
@@ -82,7 +82,7 @@ class SphereForm : public MapsTest {
     return run(maps::make_backproject, stage,
                {{"form", "sphere"}, {"size", fmt::format("{}", size)}, {"search", search}});
   }
-  /// A half-plane half way up, which ends at x = 0.1.
+  /// A half-plane at half the light's height; its edge is at x = 0.1.
   static scenes::Scene under_a_half_plane() {
     scenes::Scene scene = bare_floor(1, 0.4);
     add_quad(scene, {-0.45, 2.5, 0}, {0.55, 0, 0}, {0, 0, -0.6}).receives_shadow = false;
@@ -90,12 +90,13 @@ class SphereForm : public MapsTest {
   }
 };
 
-// The two segments behind the common chord of two disks: r² (a − sin a cos a), cos a the chord's distance over r.
+// The two segments on either side of the common chord of two disks: r² (a − sin a cos a), where cos a is the chord's
+// distance over r.
 TEST_F(SphereForm, TwoDisksShareTheirSegments) {
   std::vector<glm::vec3> disks;
   for (const float r : {0.02F, 0.3F, 1.0F}) {
     for (const float s : {0.01F, 0.4F, 1.0F, 30.0F}) {
-      for (const float share : {-0.5F, 0.01F, 0.1F, 0.5F, 0.9F, 0.99F, 1.2F}) {  // from one inside the other to apart
+      for (const float share : {-0.5F, 0.01F, 0.1F, 0.5F, 0.9F, 0.99F, 1.2F}) {  // from nested disks to disjoint ones
         disks.emplace_back(r, s, std::abs(r - s) + 2 * share * std::min(r, s));
         if (disks.back().z < 0) disks.pop_back();
       }
@@ -121,14 +122,15 @@ TEST_F(SphereForm, TwoDisksShareTheirSegments) {
       const double chord = (d * d + r * r - s * s) / (2 * d);
       expected = behind(r, chord) + behind(s, d - chord);
     }
-    // Floats: centres are off by 2^-24 of the larger radius, over a chord of up to twice the smaller.
+    // In floats, centres are off by 2^-24 of the larger radius, along a chord of up to twice the smaller one.
     EXPECT_NEAR(found[i], expected, 1e-4 * kPi * small * small + 4e-7 * std::max(r, s) * small)
         << r << " " << s << " " << d;
   }
 }
 
-// Caps on the sphere in double; in the shader disks of a stereographic picture, whose areas are directions' to 1 /
-// cos^4 of half the light's angle, and whose borders are floats. 2 % of a sphere's radius are 4 % of what it hides.
+// The twin uses caps on the sphere, in double. The shader uses disks in a stereographic projection: areas are off by a
+// factor of up to 1 / cos^4 of half the light's angle, and borders are floats. 2 % of a sphere's radius are 4 % of what
+// it hides.
 TEST_F(SphereForm, IsTheSumOfAllCapsOneByOne) {
   constexpr std::uint32_t kSize = 40;
   for (const auto& shape : {decltype(scenes::AreaLight::shape)(scenes::Sphere{{0, 5, 0}, 0.5}),
@@ -159,8 +161,8 @@ TEST_F(SphereForm, IsTheSumOfAllCapsOneByOne) {
   }
 }
 
-// A disk or a sphere behind a half-plane: what is hidden is a segment of the disk that the receiver sees, and bounding
-// spheres hide pi / 2 of it, over the cosine that texels are seen under.
+// A disk or a sphere behind a half-plane: the hidden part is a segment of the disk that the receiver sees, and bounding
+// spheres hide pi / 2 times as much, over the cosine at which texels are seen.
 TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
   constexpr std::uint32_t kSize = 1024;
   constexpr double kRadius = 0.5, kEdge = 0.1;
@@ -175,9 +177,9 @@ TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
     }
     const Stage stage = along_floor(scene, places, light_samples(1024));
     const SphereTwin twin(device(), stage, 64);
-    // A texel is f = 2.5 · 5 / 2.5 times as wide on the light; the edge is half a texel off, a chord of 2 r long.
-    // Spheres on the light's border, of which there are 2 pi r / texel in a ring two texels wide, are counted by a rule
-    // that is off by no more than a tenth of each. The cosine differs by 0.1 · tan over the light, at |x| <= 0.4 of 5.
+    // A texel is f = 2.5 · 5 / 2.5 times as wide on the light; the edge is off by half a texel along a chord 2 r long.
+    // Spheres on the light's border (2 pi r / texel in a ring two texels wide) are each counted with an error of at
+    // most a tenth. The cosine differs by 0.1 · tan over the light, at |x| <= 0.4 of 5.
     const double texel = twin.texel() * 62 / (kSize - 2) * 5;
     const double bound =
         kPi / 2 * (texel * 2 * kRadius / 2 + 0.1 * 4 * kPi * kRadius * texel) / (kPi * kRadius * kRadius) +
@@ -192,7 +194,7 @@ TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
       const double hidden = segment(-std::tan(angle) / seen_under), grown = kPi / 2 * away / 5;
       const double v = found.visibility[i];
       worst = std::max(worst, std::abs(v - std::max(0.0, 1 - grown * hidden)));
-      // An edge passes one row of 1024 samples, a 32nd of the disk's width.
+      // An edge passes one row of the 1024 samples at a time, a 32nd of the disk's width.
       const double by_rays = std::max(0.0, 1 - grown * (1 - static_cast<double>(traced.visibility[i])));
       rays = std::max(rays, std::abs(v - by_rays));
       partly += v > 0 && v < 1 ? 1 : 0;
@@ -207,9 +209,9 @@ TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
   }
 }
 
-// A strip is asked as the disk of its area: what shades that disk beside the strip counts, too.
+// A strip is replaced by a disk of its area: what shades that disk beside the strip counts, too.
 TEST_F(SphereForm, AStripsDiskIsShadedBesideTheStrip) {
-  constexpr double kEdge = 0.06;  // seen at z = 0.12 on the light
+  constexpr double kEdge = 0.06;  // appears at z = 0.12 on the light
   scenes::Scene scene = bare_floor(1, 0.4);
   scene.lights.front() = rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.05});
   add_quad(scene, {0, 2.5, kEdge + 0.4}, {0.6, 0, 0}, {0, 0, -0.4}).receives_shadow = false;
@@ -232,7 +234,8 @@ TEST_F(SphereForm, AStripsDiskIsShadedBesideTheStrip) {
   EXPECT_LT(worst, bound);
 }
 
-// A lamp between a floor and a ceiling, boards on both sides of it: maps of both sides, the same V above and below.
+// A lamp between a floor and a ceiling, with boards on both sides: it has maps on both sides, and V is the same above
+// and below.
 TEST_F(SphereForm, ALampShinesAllAround) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {3, 0, 0}, {0, 0, -3});
@@ -269,7 +272,7 @@ TEST_F(SphereForm, ALampShinesAllAround) {
   const Masks found = spheres(stage, 256), traced = trace(stage);
   std::size_t partly = 0;
   for (std::size_t i = 0; i < 22; ++i) {
-    EXPECT_NEAR(found.visibility[i], found.visibility[24 + i], 2e-3) << i;  // rasterised twice, mirrored
+    EXPECT_NEAR(found.visibility[i], found.visibility[24 + i], 2e-3) << i;  // sides are rasterised separately
     // Bounding spheres hide up to pi / 2 of what is hidden, over the cosine.
     const double hidden = 1 - static_cast<double>(traced.visibility[i]),
                  cosine = 2.5 / std::hypot(0.1 * static_cast<double>(i), 2.5);
@@ -284,7 +287,7 @@ TEST_F(SphereForm, ALampShinesAllAround) {
   EXPECT_EQ(found.visibility[47], 1.0F);
 }
 
-// The horizon cuts the disk that is seen, and nothing else does.
+// The horizon cuts the disk that the receiver sees; nothing else hides the lamp.
 TEST_F(SphereForm, TheHorizonCutsALampAsItIsSeen) {
   scenes::Scene scene = bare_floor(1);
   for (const double x : {-0.6, 0.2, 0.5}) {
@@ -309,7 +312,7 @@ TEST_F(SphereForm, TheHorizonCutsALampAsItIsSeen) {
   EXPECT_GT(cut, 20U);
 }
 
-// Textures that caps cannot weigh, and spheres, which have no plane for patches, are refused.
+// form=sphere refuses textures, which caps cannot weight; form=patch refuses spheres, which have no plane for patches.
 TEST_F(SphereForm, PatchesRefuseSpheresAndSpheresTextures) {
   scenes::Scene scene = under_a_half_plane();
   scene.lights.front().texture = scenes::Texture{"", 2, 1, {{0, 0, 0}, {1, 1, 1}}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// V of few pixels for all: what is computed, what is filled in, and how far off that is.
+// Tests V that is computed for few pixels only: which pixels are computed, which are filled in, and how large the error
+// is.
 
 #include "maps/backprojection/penumbra_width.hpp"
 #include "maps/backprojection/subsampled.hpp"
@@ -19,7 +20,7 @@ using visibility::MethodOptions;
 
 class MapsSubsampled : public ContourTest {};
 
-/// A ball over a floor, and a board so small that no grid of pixels need meet it.
+/// A ball over a floor, and a board so small that a grid of pixels may miss it.
 scenes::Scene ball_and_speck() {
   scenes::Scene scene = ball_over_floor(1);
   add_quad(scene, {1.6, 0.3, 1.5}, {0.09, 0, 0}, {0, 0.06, 0});
@@ -81,12 +82,12 @@ TEST_F(MapsSubsampled, TheErrorGrowsWithTheStep) {
   }
 }
 
-// Two plates over a floor: where the light is partly hidden by the lower one, its penumbra is the narrow one; the width
-// is the light's, by the plate's distances to floor and light. Nothing in the kernel: no width.
+// Two plates over a floor. Where the lower one hides a part of the light, its penumbra is the narrow one; the width is
+// the light's, scaled by the plate's distances to floor and light. With nothing in the kernel the width is infinite.
 TEST_F(MapsSubsampled, TheNarrowestPenumbraIsThatOfTheFarthestCaster) {
   const auto scene_of = [](bool high, bool low) {
     scenes::Scene scene = bare_floor(1, 3);
-    scene.lights.front() = rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.7});  // the narrower side's penumbra
+    scene.lights.front() = rectangle_light({0, 5, 0}, {1, 0, 0}, {0, 0, 0.7});  // the narrower side counts
     if (high) add_quad(scene, {-0.5, 2.5, 0}, {0.8, 0, 0}, {0, 0, -0.8}).receives_shadow = false;
     if (low) add_quad(scene, {1, 1, 0.3}, {0.3, 0, 0}, {0, 0, -0.3}).receives_shadow = false;
     return scene;
@@ -116,7 +117,7 @@ TEST_F(MapsSubsampled, TheNarrowestPenumbraIsThatOfTheFarthestCaster) {
 }
 
 // Few pixels are computed where penumbrae are wide on the screen, and all where they are narrow: the picture is nearer
-// to the whole one than a grid's.
+// to the full one than with a grid.
 TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
   std::vector<double> shares;
   for (const double half : {0.3, 1.5}) {
@@ -154,8 +155,8 @@ TEST_F(MapsSubsampled, PixelsAreLeftOutWherePenumbraeAreWide) {
   EXPECT_LT(shares[1], shares[0]);
 }
 
-// Each pixel has the largest step, a power of two, that leaves four computed pixels across its narrowest penumbra, as
-// wide as that is on the picture.
+// Each pixel gets the largest step, a power of two, that leaves four computed pixels across its narrowest penumbra as
+// seen in the picture.
 TEST_F(MapsSubsampled, PixelsAreChosenByThePenumbrasWidthOnThePicture) {
   constexpr std::uint32_t kMost = 16;
   scenes::Scene scene = bare_floor(0.6, 6);
@@ -184,8 +185,7 @@ TEST_F(MapsSubsampled, PixelsAreChosenByThePenumbrasWidthOnThePicture) {
   EXPECT_EQ(method->counters().at("pixelsComputed"), expected);
 }
 
-// Pull-push by hand: a constant stays one, nothing crosses from object to object, and a ramp comes back within its
-// step.
+// Pull-push: constants are kept, and nothing crosses from object to object.
 TEST(MapsFillIn, KeepsConstantsAndObjectsApart) {
   constexpr std::uint32_t kWidth = 37, kHeight = 29;
   std::vector<KnownPixel> pixels(std::size_t{kWidth} * kHeight);
@@ -203,8 +203,8 @@ TEST(MapsFillIn, KeepsConstantsAndObjectsApart) {
   }
 }
 
-// Known at every second, fourth or eighth pixel: between four known ones V is bilinear, so that a ramp comes back as it
-// was.
+// Pixels are known at every second, fourth or eighth place: between four known pixels V is bilinear, so that a ramp is
+// restored exactly.
 TEST(MapsFillIn, BetweenFourPixelsIsBilinear) {
   constexpr std::uint32_t kWidth = 65;
   std::mt19937 random(3);
@@ -232,8 +232,8 @@ TEST(MapsFillIn, BetweenFourPixelsIsBilinear) {
   }
 }
 
-// All of a row's pixels 0 to 3 but pixel 1 are known. The coarser level has 0 at its own place, and 2 and 3 at 2.5:
-// from 1 these are 1 and 1.5 away, and tents 2 wide weigh them by 1 / 2 and 1 / 4.
+// In a row of pixels 0 to 3 all but pixel 1 are known. In the coarser level pixel 0 keeps its place, and pixels 2 and 3
+// lie at 2.5: these are 1 and 1.5 away from pixel 1, and tents 2 wide weight them by 1 / 2 and 1 / 4.
 TEST(MapsFillIn, TentsAreTwoPixelsOfTheirLevelWide) {
   std::vector<KnownPixel> row(4, KnownPixel{0, true, 1});
   row[0].v = 0;

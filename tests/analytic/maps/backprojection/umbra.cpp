@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests umbrae: nothing is left of a light that is all hidden, however many texels that takes. A search in too narrow a
+// Tests umbrae: no light is left where the whole light is hidden, however many texels hide it. A search in too narrow a
 // part of a map would leave light at the light's ends.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
@@ -30,8 +30,8 @@ class MapsUmbra : public MapsTest {
   }
 };
 
-// A kernel of some 500 texels across: what is 2 % of it is more than tiles leave themselves for rounding and for what
-// reaches beyond a texel.
+// A kernel some 500 texels across: 2 % of it is more than the margin that tiles have for rounding and for reaching
+// beyond a texel.
 TEST_F(MapsUmbra, APlateThatIsManyTexelsWideHidesTheWholeLight) {
   scenes::Scene scene = bare_floor(1, 3);
   add_quad(scene, {0, 3, 0}, {2.1, 0, 0}, {0, 0, -2.1}).receives_shadow = false;
@@ -41,8 +41,8 @@ TEST_F(MapsUmbra, APlateThatIsManyTexelsWideHidesTheWholeLight) {
   }
 }
 
-/// A floor, a wall at x = -6 up to beyond the light, which makes its maps hemicubes, and the light at 5 above the
-/// floor.
+/// A floor, a wall at x = -6 that reaches above the light (so that the light's maps are hemicubes), and the light 5
+/// above the floor.
 scenes::Scene floor_and_wall() {
   scenes::Scene scene = bare_floor(0.5, 6);
   add_quad(scene, {-6, 3, 0}, {0, 0, 6}, {0, 3, 0}).casts_shadow = false;
@@ -50,10 +50,10 @@ scenes::Scene floor_and_wall() {
   return scene;
 }
 
-// The light in a box whose sides are parallel to the hemicube's and whose edges lie on the cube's: patches cover its
-// bottom and one side without gaps, as receivers see it that do not look over an edge from one side to another, where
-// rounding leaves a light sample now and then. Bits say it of samples, sums of the whole light, each patch's area to
-// 2^-22.
+// The light is in a box whose sides are parallel to the hemicube's and whose edges lie on the cube's: patches cover the
+// bottom and one side without gaps. This holds for receivers that do not look over an edge from one side to another,
+// where rounding now and then leaves a light sample. Bits show this for samples, sums for the whole light, with each
+// patch's area to 2^-22.
 TEST_F(MapsUmbra, ABoxOfTheHemicubesShapeHidesTheWholeLight) {
   scenes::Scene scene = floor_and_wall();
   const auto side = [&](const glm::dvec3& middle, const glm::dvec3& u, const glm::dvec3& v) {
@@ -71,9 +71,9 @@ TEST_F(MapsUmbra, ABoxOfTheHemicubesShapeHidesTheWholeLight) {
   }
 }
 
-// Things that stand so little before a wall that they are hardly higher than what they shade are still in front of its
-// plane and above it, by less than 2 % of the distance to the light. (By at least half a row of texels, so far below
-// the light: a texel stands as high as its centre.)
+// An object just in front of a wall, hardly higher than what it shades, is still in front of the wall's plane and above
+// it, by less than 2 % of the distance to the light. (At this distance it is above by at least half a row of texels: a
+// texel stands as high as its centre.)
 TEST_F(MapsUmbra, WhatStandsJustBeforeAWallShadesIt) {
   static constexpr std::uint32_t kSide = 16;
   scenes::Scene scene = floor_and_wall();
@@ -103,16 +103,16 @@ TEST_F(MapsUmbra, WhatStandsJustBeforeAWallShadesIt) {
   }
 }
 
-// A plate that lies by less than 1 % of its depth above a tilted plane, under a wide light that sees some 20 texels of
-// a fine map beside each place: texels of either stand beside each other, and nodes of a hierarchy that hide as a
-// whole, because all they hold is in front of the plane, are not those that hold some of both. Nor does the plane hide
-// anything from itself.
+// A plate less than 1 % of its depth above a tilted plane, under a wide light that sees some 20 texels of a fine map
+// around each place. Texels of the plate and of the plane are neighbours there: hierarchy nodes that hide light as a
+// whole, because all they hold is in front of the receiver's plane, must not hold texels of both. The plane must not
+// hide anything from itself either.
 TEST_F(MapsUmbra, WhatLiesJustAboveATiltedPlaneHasOneOutlineInEveryWay) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {1.5, 0.9, 0}, {0, 0, -1.5});
   add_quad(scene, {0.5, 0.34, 0}, {0.4, 0.24, 0}, {0, 0, -0.5}).receives_shadow = false;
   scene.lights.push_back(ceiling_light(5, 2));
-  scene.cameras.push_back(camera({-1, 4, 1}, {0.1, 0.07, 0}, 3));  // at an edge of the plate
+  scene.cameras.push_back(camera({-1, 4, 1}, {0.1, 0.07, 0}, 3));  // looks at an edge of the plate
   const Stage stage(scene, 10, 10, light_samples(1));
   const auto v = [&](const Factory& factory, MethodOptions options) {
     options["size"] = "1024";

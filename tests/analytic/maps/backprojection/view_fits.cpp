@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that project maps back onto the light, with maps of what a camera sees: the same bits where it sees all,
-// nothing lost that shades what it sees, smaller errors where it sees little.
+// Tests backprojecting methods with maps fitted to a camera's view: the same bits where the camera sees everything;
+// where it sees little, no caster that shades the view is lost, and errors are smaller.
 
 #include "tests/analytic/maps/backprojection_scenes.hpp"
 
@@ -37,8 +37,8 @@ class BackprojectedViews : public MapsTest {
             {"soft-shadow-map", maps::make_soft_shadow_map, {}},
             {"soft-shadow-map, passes", maps::make_soft_shadow_map, {{"passes", "2"}, {"form", "scatter"}}}};
   }
-  /// A wide floor under a light at 5; over it a plate low in the middle, and one high up, beside all that a camera that
-  /// looks at the middle sees of the floor, which hides a part of the light from there.
+  /// A wide floor under a light at 5. A low plate is over its middle. A high one is outside the directions in which a
+  /// camera at the middle sees the floor, but hides a part of the light from there.
   static scenes::Scene wide_floor(const glm::dvec3& eye, double fov) {
     scenes::Scene scene;
     add_quad(scene, {0, 0, 0}, {6, 0, 0}, {0, 0, -6}).casts_shadow = false;
@@ -94,7 +94,7 @@ TEST_F(BackprojectedViews, NothingThatShadesASmallPartOfAFloorIsLost) {
   }
 }
 
-// A method keeps nothing of the view before.
+// A method keeps nothing of its previous view.
 TEST_F(BackprojectedViews, AnotherViewHasOtherMaps) {
   const Stage first = far_away(), second = close();
   for (const auto& [name, make, more] : methods()) {
