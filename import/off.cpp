@@ -203,7 +203,7 @@ class OffReader {
       const bool is_longer = !words_.next_on_line().empty();
       if (!header_.attributes && is_longer != (longer_ == mesh_.soup.positions.size()) &&
           !mesh_.soup.positions.empty()) {
-        words_.fail("vertex {} has {} numbers than those before it; the header does not fit the file",
+        words_.fail("vertex {} has {} numbers than the vertices before it; the header does not match the file",
                     mesh_.soup.positions.size(), is_longer ? "more" : "fewer");
       }
       longer_ += is_longer ? 1 : 0;

@@ -68,10 +68,11 @@ void wait_for(Device::State& device, const vk::raii::Fence& fence, const std::st
     if (device.device.waitForFences(*fence, VK_TRUE, nanoseconds(kTurn).count()) == vk::Result::eSuccess) return;
     if (is_processor && idle.next() >= kMostIdleTurns) {
       abandon(device);
-      throw DeviceDoesNotAnswer(fmt::format(
-          "{}: the device {} has the work, but has done nothing for {:.0f} s; could the driver not start its threads? "
-          "(ulimit -u, the control group's pids.max)",
-          what, device.info.name, duration<double>(kTurn * kMostIdleTurns).count()));
+      throw DeviceDoesNotAnswer(
+          fmt::format("{}: the device {} was given the work but has made no progress for {:.0f} s; perhaps the driver "
+                      "could not start its threads "
+                      "(ulimit -u, the control group's pids.max)",
+                      what, device.info.name, duration<double>(kTurn * kMostIdleTurns).count()));
     }
     if (Clock::now() - start >= longest) {
       abandon(device);

@@ -172,7 +172,7 @@ TEST_F(ErrorBudget, WhereTheMapHasOneLayerItIsLayers) {
               "soft-irregular");
   EXPECT_LT(number(result, "layers"), -0.3 * rmse(result));
   EXPECT_NEAR(number(result, "view"), 0, kSums);
-  EXPECT_TRUE(result.at("errorBudget").at("fusion").is_null()) << "what is not known cannot be joined";
+  EXPECT_TRUE(result.at("errorBudget").at("fusion").is_null()) << "surfaces that the map does not hold cannot be fused";
   EXPECT_LT(number(result, "remainder"), 0.005);
 }
 

@@ -92,7 +92,7 @@ TEST_F(SlowMethods, EndBetweenTiles) {
   session::RunPlan plan{.lights = session.lights, .discard_first = true, .most_seconds = 0.04};
   try {
     session::run_method(slow, session, plan, none, progress_);
-    ADD_FAILURE() << "as long as it likes";
+    ADD_FAILURE() << "the run was not stopped at the limit";
   } catch (const session::TakesTooLong& found) {
     EXPECT_GT(found.seconds, plan.most_seconds);
   }

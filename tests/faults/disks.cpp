@@ -55,7 +55,7 @@ TEST_P(DiskFaults, EachOutputIsOldOrWholeOrNotThere) {
   const int failed = GetParam().error == 0 ? 137 : 4;
   int faults = 0;
   for (int at = 1;; ++at) {
-    ASSERT_LT(at, 1000) << "it never gets through";
+    ASSERT_LT(at, 1000) << "it never succeeds";
     for (const char* name : {"out.exr", "out.bits", "stats.json"}) std::filesystem::remove(folder_ / name);
     write("old.png", "old");
     const Ending ending = run_with_fault(at);

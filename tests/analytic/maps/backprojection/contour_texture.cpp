@@ -67,7 +67,7 @@ TEST_F(MapsContourTexture, IsTheOctagonWeighedTexelByTexel) {
       largest = std::max(largest, std::abs(static_cast<double>(found.visibility[i]) - expected));
     }
     EXPECT_GT(partly, 100U);
-    EXPECT_GT(moved, 0.2) << "the texture is to be seen";
+    EXPECT_GT(moved, 0.2) << "the texture makes a visible difference";
     EXPECT_LT(largest, 6e-5) << "shape " << shape;
     RecordProperty(fmt::format("shape {}", shape), fmt::format("{:.2g}", largest));
   }
