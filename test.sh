@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds, and runs the tests with ctest: label `quick`, or what the arguments say
+# Installs what is missing, builds, and runs the tests with ctest: label `quick`, or those selected by the arguments
 # (./test.sh -L full, ./test.sh -R layering, ./test.sh -R Suite.Test).
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
@@ -13,7 +13,7 @@ case " $* " in
 esac
 build ON all
 if (($# == 0)); then set -- -L quick; fi
-# ctest knows suites. Where none has the name that is asked for, it may be a single test's, as a failure prints it.
+# ctest lists suites. If none matches the arguments, they may name a single test, as printed by a failure.
 if [[ $(ctest --test-dir "$build" -N "$@") == *'Total Tests: 0'* ]]; then export PENUMBRA_SINGLE_TESTS=1; fi
 # GPU tests on the processor already use all cores: more than two at once only make each slower.
 ctest --test-dir "$build" --output-on-failure --no-tests=error --parallel 2 "$@" | never_silent 'tests are running'

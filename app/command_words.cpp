@@ -46,8 +46,8 @@ const std::map<std::string_view, std::string_view>& groups() {
   return table;
 }
 
-/// Returns a command line that does what the command is most often used for; tests/docs/examples.py runs each as a
-/// reader would, in a folder with the scenes that ship.
+/// Returns a command line for the most common use of the command; tests/docs/examples.py runs each as a reader would,
+/// in a folder with the shipped scenes.
 std::string_view example_of(const CLI::App& command) {
   static const std::map<std::string_view, std::string_view> table = {
       {"render", "penumbra render scenes/room.json -o room.exr --png room.png"},

@@ -89,7 +89,7 @@ int run_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    // `penumbra WORD --help`: CLI11 handles the second before it checks the first.
+    // `penumbra WORD --help`: CLI11 handles --help before it checks WORD.
     const bool no_command =
         app.get_subcommands().empty() &&
         std::ranges::any_of(app.remaining(), [](const std::string& word) { return !word.starts_with('-'); });

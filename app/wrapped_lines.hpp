@@ -14,15 +14,16 @@ struct TextColumns {
   std::size_t indent = 0;  ///< column at which the rest of a broken line begins
 };
 
-/// Breaks each line of a text at blanks, so that it ends within the width. A line that continues one which itself
-/// begins with blanks has these as well. A word longer than the width has a line of its own.
+/// Breaks each line of a text at blanks, so that it ends within the width. If a line begins with blanks,
+/// the lines that continue it begin with the same blanks. A word longer than the width has a line of its own.
 std::string wrapped_lines(std::string_view text, const TextColumns& columns);
 
 /// Returns how many columns a UTF-8 text takes, one for each code point: no help text has wide or combining ones.
 std::size_t columns_of(std::string_view text);
 
-/// Returns the width in which help is printed: environment variable COLUMNS if it is a whole number, else that of the
-/// terminal that stdout is, else 80. At least 40, so that words fit; at most 100, since longer lines are hard to read.
+/// Returns the width in which help is printed: environment variable COLUMNS if it is a whole number, else the
+/// terminal's width if stdout is a terminal, else 80. At least 40, so that words fit; at most 100, since longer lines
+/// are hard to read.
 std::size_t help_width();
 
 }  // namespace penumbra::app

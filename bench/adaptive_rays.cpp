@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casts a few rays everywhere and all rays where the few disagree.
+// Casts a few rays everywhere, and all rays where the results of the few differ.
 
 #include "bench/adaptive_rays.hpp"
 

@@ -12,8 +12,8 @@
 
 namespace penumbra::bench {
 
-/// Ray caster of a renderer that exploits that most of a picture is lit or dark: a few light samples everywhere, then
-/// all of them where the few disagree.
+/// Ray caster like that of a renderer which makes use of the fact that most of a picture is completely lit or dark: it
+/// uses a few light samples everywhere, and all of them only where the results of the few differ.
 class AdaptiveRays {
  public:
   static constexpr std::uint32_t kFew = 64;  ///< light samples of the first step

@@ -52,7 +52,8 @@ sys.path[:0] = [str(ROOT / "blender"), str(ROOT / "docs/figures"), str(ROOT / "d
 
 WIDTH, HEIGHT = 640, 480
 CROP = 64, 48  # pixels
-# Samples a pixel of Cycles, and of the judge for each of two seeds. A picture that is blurred by 16 samples has more error than one that is not, so fewer tell it.
+# Samples per pixel of Cycles, and of the judge for each of two seeds. A picture blurred by 16 samples has a larger
+# error, which fewer samples suffice to measure.
 CYCLES_SAMPLES = {"centres": (64, 256), "antialiased": (64, 256), "lens": (16, 64), "motion": (16, 64)}
 JUDGE_SAMPLES = {"centres": 4096, "antialiased": 4096, "lens": 1024, "motion": 1024}
 RUNS = 3
@@ -63,16 +64,17 @@ PARTS = {"centres": "at pixels' centres", "antialiased": "antialiased, 16 view s
 BLURRED = "large_penumbrae", "dense", "four_lamps"  # the scenes of lens and motion
 ROWS = [(part, scene) for part in PARTS for scene in (BLURRED if part in ("lens", "motion") else NAMES)]
 FRAMES_A_SECOND = 24
-# Blender's frame 1 is frame 12 of the file, the middle of a second of animation. Cycles looks the moment of a sample up in a table of 256 entries, by which it
-# exposes the first 254 of 256 parts of the shutter's time: seen by measuring, since over the whole shutter the means of the two differ by 0.2 %, and over this
-# part of it by 0.01 % (large penumbrae, 64 moments). Penumbra's shutter is open as long as Cycles' is.
+# Blender's frame 1 is frame 12 of the file, the middle of a second of animation. Cycles takes the moment of a sample
+# from a table of 256 entries, and thus exposes only the first 254 of 256 parts of the shutter's time. This was found by
+# measurement: the mean brightness of Cycles and Penumbra differs by 0.2 % over the whole shutter time, but by 0.01 %
+# over this part of it (large penumbrae, 64 moments). Penumbra's shutter is therefore open as long as that of Cycles.
 SHUTTER = 0.5 * 254 / 256
 FRAME = 12 - 0.25 + SHUTTER / 2
 
 
 class Picture:
-    """A file's beauty, and where it has them V and what each pixel shows (position, normal), as Blender has its axes. Rows
-    from the top."""
+    """A file's beauty, and, if it has them, V and each pixel's position and normal (in Blender's axes). The first row
+    is at the top."""
 
     def __init__(self, path):
         from penumbra import exr
@@ -92,13 +94,14 @@ class Picture:
 
 
 def same_surface(ours, theirs):
-    """Pixels whose centres show one point of one surface. At an edge it is decided by roundings which of two is shown."""
+    """Returns the pixels whose centres show the same point of the same surface in both pictures. At an edge, rounding
+    decides which surface is shown."""
     near = [numpy.abs(a - b).max(axis=-1) for a, b in zip(ours, theirs)]
     return (near[0] < 2e-3) & (near[1] < 2e-3)
 
 
 def crop_of_most(wanted):
-    """Left column and top row of the crop that holds the most pixels which are True."""
+    """Returns left column and top row of the crop with the largest number of True pixels."""
     total = numpy.pad(wanted.astype(float).cumsum(0).cumsum(1), ((1, 0), (1, 0)))
     w, h = CROP
     inside = total[h:, w:] - total[:-h, w:] - total[h:, :-w] + total[:-h, :-w]
@@ -107,7 +110,7 @@ def crop_of_most(wanted):
 
 
 class Scene:
-    """A scene's files, as scenes.py wrote them; `facts`: triangles, lens and what moves."""
+    """A scene's files, as written by scenes.py; `facts`: triangles, lens and moving object."""
 
     def __init__(self, name, facts, work, program, environment):
         self.name, self.facts, self.work, self.program, self.environment = name, facts, work, program, environment
@@ -120,7 +123,7 @@ class Scene:
                    out, engine, samples, part, seed, self.program]
         if crop is not None:
             (left, top), (w, h) = crop, CROP
-            # Blender rounds a border down to pixels: a fortieth of a pixel more keeps rounding errors from taking one away.
+            # Blender rounds a border down to pixels: a fortieth of a pixel is added, so rounding errors remove none.
             command += [(left + 0.025) / WIDTH, (left + w + 0.025) / WIDTH,
                         (HEIGHT - top - h + 0.025) / HEIGHT, (HEIGHT - top + 0.025) / HEIGHT]
         return usage_of(command, self.environment)
@@ -175,7 +178,7 @@ class Scene:
         for run in range(RUNS):
             for engine in engines:
                 if engine == engines[-1] and run > 0:
-                    continue  # minutes; its share a sample is what is wanted, and is large against what varies
+                    continue  # one run is enough: it takes minutes, and varies little
                 out = work / "picture.exr"
                 out.unlink(missing_ok=True)
                 usage = self.run(engine, out, part)
@@ -204,7 +207,7 @@ def state():
 
 @contextlib.contextmanager
 def made(build, names):
-    """The scenes by name, written into a folder that is gone afterwards."""
+    """Yields the scenes by name, written to a temporary folder."""
     with tempfile.TemporaryDirectory() as folder:
         work = Path(folder)
         environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(work / "scripts"), "BLENDER_USER_CONFIG": str(work / "config")}
@@ -215,7 +218,7 @@ def made(build, names):
 
 
 def measure(build, wanted):
-    """Measures the rows of these scenes and parts, and writes each down as soon as it is known."""
+    """Measures the rows of these scenes and parts, and writes each as soon as it is measured."""
     unknown = set(wanted) - set(NAMES) - set(PARTS)
     if unknown:
         raise SystemExit(f"{', '.join(unknown)}: scenes are {', '.join(NAMES)}; parts are {', '.join(PARTS)}")
@@ -230,7 +233,8 @@ def measure(build, wanted):
 
 
 def measure_memory(build):
-    """Adds the largest resident set to rows that were measured without: one run of each entry but of Cycles' with many samples, which takes as much as with few."""
+    """Adds the largest resident set to rows that lack it, by one run of each entry, except Cycles with many samples,
+    which needs as much memory as with few."""
     data = json.loads(RESULT.read_text())
     asked = [row for row in data["rows"] if not any("mebibytes" in entry for entry in row["entries"])]
     with made(build, list(dict.fromkeys(row["scene"] for row in asked))) as all_scenes:
@@ -246,7 +250,7 @@ def measure_memory(build):
 
 
 def keep(row, triangles, now):
-    """Puts one row into the file of results."""
+    """Adds one row to the file of results, or replaces it."""
     data = json.loads(RESULT.read_text()) if RESULT.exists() else {"rows": [], "triangles": {}}
     rows = {(one["part"], one["scene"]): one for one in (*data["rows"], row)}
     data.pop("judgeSamples", None)
@@ -256,7 +260,7 @@ def keep(row, triangles, now):
 
 
 class Line:
-    """Cycles' seconds and error over its samples, through two measured counts."""
+    """Cycles' seconds and error as functions of its samples, fitted to two measured sample counts."""
 
     def __init__(self, row):
         entries = {int(name.split()[1]): entry for entry in row["entries"] if (name := entry["entry"]).startswith("cycles")}
@@ -264,15 +268,16 @@ class Line:
         self.counts, self.each = (few, many), (high["seconds"] - low["seconds"]) / (many - few)
         self.start = low["seconds"] - self.each * few
         self.most_error, self.least_seconds = low["error"], low["seconds"]  # measured
-        # error = unit / sqrt(samples): the geometric mean of what both counts say of unit
+        # error = unit / sqrt(samples): the geometric mean of the two values of `unit`
         self.unit = sqrt(low["error"] * high["error"]) * (few * many) ** 0.25
 
     def seconds(self, error):
         return self.start + self.each * max(1, (self.unit / error) ** 2)
 
     def factor(self, error, ours):
-        """Returns how many times as long as `ours` Cycles takes, as text: for more error than at the fewest measured samples a bound, since
-        what a process costs without samples is a small difference of large times."""
+        """Returns how many times as long as `ours` Cycles takes, as text. For errors larger than that at the fewest
+        measured samples it is a bound, since the time of a process without samples is a small difference of large
+        times."""
         if error > self.most_error:
             return f"≤ {number(self.least_seconds / ours)}"
         return number(self.seconds(error) / ours)
@@ -283,7 +288,8 @@ def number(value):
 
 
 def at_own_error(row):
-    """How many times as long Cycles takes for the error of Penumbra's picture; a bound where that is below what the judge can tell."""
+    """Returns how many times as long Cycles takes for the error of Penumbra's picture; a bound if that error is below
+    the judge's noise."""
     ours = next(entry for entry in row["entries"] if entry["entry"] == "penumbra")
     bound = "" if ours["error"] > row["leastError"] else "≥ "
     return bound + Line(row).factor(max(ours["error"], row["leastError"]), ours["seconds"])
@@ -303,7 +309,7 @@ def table(rows):
         ours, line = entries["penumbra"], Line(row)
         own = f"{ours['error']:.5f}" if ours["error"] > row["leastError"] else f"≤ {row['leastError']:.5f}"
         cycles = " | ".join(f"{entries[f'cycles {samples}']['error']:.4f} / {number(entries[f'cycles {samples}']['seconds'])}" for samples in line.counts)
-        # An error below what ours has is nothing that both reach.
+        # Both reach an error only if it is not below ours.
         factors = ", ".join(line.factor(error, ours["seconds"]) if error >= ours["error"] else "–" for error in ERRORS)
         through = number(entries["add-on"]["seconds"]) if "add-on" in entries else "–"
         memories = ", ".join(memory(entries, name) for name in ("penumbra", "add-on", f"cycles {few}"))
@@ -312,7 +318,8 @@ def table(rows):
 
 
 def summary(rows):
-    """The times that Cycles takes to Penumbra's error, a column a part; and the most memory that each took."""
+    """Yields the lines of a table: how many times as long Cycles takes to Penumbra's error, one column per part, and
+    the largest memory of each."""
     yield f"| scene | {' | '.join(PARTS)} | MiB: Penumbra, Cycles |"
     yield "| --- |" + " --- |" * (len(PARTS) + 1)
     found = {(row["scene"], row["part"]): row for row in rows}
@@ -324,7 +331,8 @@ def summary(rows):
 
 
 def chart(data, parts):
-    """The curves are Cycles', each mark on them four times the samples of the one before; the marks apart are Penumbra's."""
+    """Draws Cycles' curves, with four times as many samples at each mark as at the previous one, and Penumbra's
+    separate marks."""
     from chart import STYLES, Chart, key, mark
     from drawing import Drawing
     d = Drawing(980, 440, "Error against processor time: Penumbra and Cycles")
@@ -406,7 +414,8 @@ BLOCK = re.compile(r"(<!-- results/against-cycles\.json -->\n).*?(<!-- end -->)"
 
 
 def at_one_percent(rows):
-    """How many times as long Cycles takes for an error of 1 %, for each scene whose picture by Penumbra reaches it. Bounds ("≤") are left out."""
+    """Returns how many times as long Cycles takes for an error of 1 %, for each scene whose picture by Penumbra reaches
+    it, without bounds ("≤")."""
     for row in rows:
         ours = next(entry for entry in row["entries"] if entry["entry"] == "penumbra")
         times = Line(row).factor(0.01, ours["seconds"])

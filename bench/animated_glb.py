@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Motion for a binary glTF file that has none."""
+"""Adds motion to a binary glTF file without animations."""
 
 import json
 import struct
 
 
 def add_motion(path, name, moves, place_at=0.5):
-    """Adds an animation to the .glb file at `path`: the node of this name moves by `moves` (x, y, z, in its parent's axes) in a second, at even speed, and is in its
-    place after `place_at` of it. A node above it moves, since an animated node may have no matrix."""
+    """Adds an animation of one second to the .glb file at `path`: the node of this name moves by `moves` (x, y, z, in
+    its parent's axes) at constant speed, and is in its original place after the part `place_at` of the second. A new
+    parent node is animated, since an animated node may have no matrix."""
     data = path.read_bytes()
     length = struct.unpack_from("<I", data, 12)[0]
     document, binary = json.loads(data[20:20 + length]), bytearray(data[28 + length:])

@@ -19,7 +19,7 @@ struct CpuEntry {
   std::uint64_t items = 0;           ///< number of items made: edges, records, wedges
   std::vector<double> seconds;       ///< of the timed runs, in order
   std::optional<double> growth;      ///< median ÷ median of the previous mesh
-  std::optional<double> host_ratio;  ///< of a device only: median of its twin on the processor ÷ its own
+  std::optional<double> host_ratio;  ///< of a device only: median of its twin on the processor ÷ its own median
   std::string device;                ///< empty: the processor
   std::map<std::string, std::uint64_t> counts;
   std::map<std::string, double> passes;  ///< of a device: milliseconds of each pass, run by run

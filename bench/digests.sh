@@ -1,16 +1,16 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# digests.sh BUILD [SCENE…]: one line a picture, with a digest of its channels and of its mask. Two builds whose lists are the
-# same compute the same masks, V and beauty on this device:
+# digests.sh BUILD [SCENE…]: prints one line per picture, with a digest of its channels and of its mask. Two builds with
+# equal lists compute the same masks, V and beauty on this device:
 #   bench/digests.sh build >before.txt; …; bench/digests.sh build | diff before.txt -
-# The methods are those of `penumbra methods --json`: each on every scene, and under each single light of the scene that has all
-# kinds of light; each choice of its options and another value of each number on one scene. A method that refuses has its exit
-# code instead of a digest. Without scenes: all that ship.
+# Each method of `penumbra methods --json` renders every scene, and the scene with all kinds of lights under each single
+# light; on one scene also with each choice of its options, and with another value of each number. If a method refuses,
+# the line has its exit code instead of a digest. Without scenes, all scenes of scenes/ are rendered.
 set -euo pipefail
 export LC_ALL=C
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 
-# --one BUILD SCENE LIGHT PATTERN ENTRY: prints the line of one picture; of all lights if LIGHT is `-`.
+# --one BUILD SCENE LIGHT PATTERN ENTRY: prints the line of one picture; with all lights if LIGHT is `-`.
 if [[ ${1:-} == --one ]]; then
   build=$2 scene=$3 light=$4 pattern=$5 entry=$6 samples=64 code=0 options=()
   work=$(mktemp -d)
@@ -22,7 +22,7 @@ if [[ ${1:-} == --one ]]; then
   if [[ $light != - ]]; then options+=(--light "$light"); fi
   command=("$build/penumbra" --quiet render "$scene" -o "$work/out.exr" --size 64x64 --method "${words[0]}" "${options[@]}"
            --light-samples "$samples" --sample-pattern "$pattern")
-  # A method without a mask refuses --bits, and is then asked for its picture alone.
+  # A method without a mask refuses --bits, and is then run again without it.
   "${command[@]}" --bits "$work/out.bits" 2>/dev/null || "${command[@]}" 2>/dev/null || code=$?
   picture="exit $code" mask=-
   if ((code == 0)); then picture=$("$build/exr_digest" "$work"/*.exr | cut -d' ' -f1); fi

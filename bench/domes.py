@@ -33,7 +33,7 @@ AREAS = "edge-scatter:rows=exact"
 
 
 def rows_of(program, folder, dome, methods, samples, given):
-    """Rows of methods that one run compares. ssao and hbao know no pictures of the sky."""
+    """Returns the rows of methods that are compared in one run. ssao and hbao do not support pictures of the sky."""
     out = Path(folder) / "compared"
     subprocess.run([program, "compare", ROOT / "scenes" / "skies" / "knot.json", "--light", dome, "--methods", ",".join(methods), "--reference", "exact",
                     "--size", f"{given.size}x{given.size}", "--runs", str(given.runs), "-o", out, "--quiet", *(["--light-samples", str(samples)] if samples else [])],
@@ -53,7 +53,7 @@ def measured(given):
 PEER_SAMPLES = (16, 64, 256, 1024, 4096)
 PEER_SCENES = (("knot", "skies/knot.json", {"dome": {}}), ("knot", "skies/knot.json", {"dome": {"image": "evening.hdr"}}),
                ("bunny", "bunny.json", {"dome": {}}), ("room", "room.json", {"dome": {"image": "evening.hdr"}}))
-ENOUGH = (1e-2, 1e-3, 1e-4)  # relative RMSE for which exact areas are compared: they have none
+ENOUGH = (1e-2, 1e-3, 1e-4)  # relative RMSE at which the peer is compared with exact areas, which have none
 
 
 def processor_seconds(words):
@@ -64,7 +64,8 @@ def processor_seconds(words):
 
 
 def peer_seconds(rows, error):
-    """Seconds and rays that the peer needs for an error, along straight lines between logarithms; whether this is beyond what was measured."""
+    """Returns seconds and rays that the peer needs for an error, interpolated linearly between logarithms, and whether
+    this is extrapolated."""
     pairs = list(zip(rows, rows[1:], strict=False))
     below = [pair for pair in pairs if pair[1]["relative"] <= error]
     first, second = below[0] if below else pairs[-1]
@@ -73,7 +74,7 @@ def peer_seconds(rows, error):
 
 
 def beside_peer(given):
-    """Rows of one scene after the other: ours, then the peer's own."""
+    """Yields the rows of one scene after the other: Penumbra's, then the peer's."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         shutil.copy(ROOT / "scenes" / "skies" / "evening.hdr", folder)

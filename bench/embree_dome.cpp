@@ -2,10 +2,10 @@
 // A plain program on Embree under one dome: the peer of bench/domes.py --peer.
 //   embree_dome SCENE.json TRUTH.exr [SAMPLES | OTHER.exr] ...
 // Takes the view samples of TRUTH.exr, a picture of the scene by `penumbra render` with exact areas, and prints a line
-// for each further argument. For a number: V by so many rays a view sample, in directions of a scrambled (0,
-// 2)-sequence that are chosen in proportion to the light that would arrive, its processor and wall seconds, and the
-// error against the truth. For a picture of the same view samples: its error. Errors are RMSE of V and RMSE over the
-// mean of V.
+// for each further argument. For a number it traces that many rays per view sample, in directions of a scrambled
+// (0, 2)-sequence with a density in proportion to the light that would arrive, and prints processor and wall seconds,
+// and the error of V against the truth. For a picture of the same view samples it prints the error. Errors are RMSE of
+// V, and RMSE divided by the mean of V.
 
 #include "base/error.hpp"
 #include "base/exr.hpp"
@@ -62,7 +62,7 @@ std::vector<ViewSample> view_samples(const ExrFile& file) {
   return samples;
 }
 
-/// Point i of Sobol's (0, 2)-sequence, whose bits are changed by two random words.
+/// Returns point i of Sobol's (0, 2)-sequence, scrambled by two random words.
 std::array<double, 2> sequence_point(std::uint32_t i, std::uint32_t first, std::uint32_t second) {
   std::uint32_t x = 0, y = 0;
   for (std::uint32_t bit = 1u << 31u, v = 1u << 31u; i != 0; i >>= 1u, bit >>= 1u, v ^= v >> 1u) {
@@ -73,20 +73,20 @@ std::array<double, 2> sequence_point(std::uint32_t i, std::uint32_t first, std::
   return {((x ^ first) + 0.5) * 0x1p-32, ((y ^ second) + 0.5) * 0x1p-32};
 }
 
-/// Random word of a pixel (PCG-RXS-M-XS, O'Neill 2014).
+/// Returns the random word of a pixel (PCG-RXS-M-XS, O'Neill 2014).
 std::uint32_t random_word(std::uint32_t seed) {
   const std::uint32_t state = seed * 747796405u + 2891336453u;
   const std::uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
   return (word >> 22u) ^ word;
 }
 
-/// Sums of weights, from which numbers are drawn in proportion to them.
+/// Running sums of weights, from which entries are drawn with probabilities in proportion to their weights.
 class Sums {
  public:
   void clear() { sums_.assign(1, 0); }
   void add(double weight) { sums_.push_back(sums_.back() + weight); }
   [[nodiscard]] double all() const { return sums_.back(); }
-  /// Returns the number of the entry at u, and replaces u, in [0, 1), by the place in it.
+  /// Returns the index of the entry at u, in [0, 1), and replaces u by the position within this entry.
   std::size_t draw(double& u) const {
     const double at = u * all();
     const auto above = std::upper_bound(sums_.begin() + 1, sums_.end() - 1, at);
@@ -102,10 +102,10 @@ class Sums {
 
 struct Drawn {
   glm::dvec3 direction;
-  double weight = 0;  // light that would arrive from there, over the density of drawn directions; 0: none
+  double weight = 0;  // light that would arrive from there, divided by the density of directions
 };
 
-/// Draws directions in proportion to a constant radiance times the cosine.
+/// Draws directions with a density in proportion to a constant radiance times the cosine.
 class ConstantDome {
  public:
   explicit ConstantDome(const scenes::Dome& dome) : dome_(dome) {}
@@ -132,7 +132,8 @@ class ConstantDome {
   glm::dvec3 n_{0}, u_{0}, v_{0};
 };
 
-/// Draws directions in proportion to a picture's luminance times a bound of the cosine in blocks of texels.
+/// Draws directions with a density in proportion to a picture's luminance times a bound of the cosine in each block of
+/// texels.
 class PictureDome {
  public:
   PictureDome(const scenes::Dome& dome, const scenes::Texture& picture)
@@ -199,7 +200,7 @@ class PictureDome {
     block.light = block.rows.all();
     const auto at = [&](double column, double row) { return frame_.direction({height(row), column / picture_.width}); };
     block.middle = at((x0 + x1) / 2.0, (y0 + y1) / 2.0);
-    // The farthest point of a block from its middle is a corner, or lies on the longer of its two parallels.
+    // The point of a block that is farthest from its middle is a corner, or lies on the longer of its two parallels.
     for (const double column : {static_cast<double>(x0), (x0 + x1) / 2.0, static_cast<double>(x1)})
       for (const double row : {static_cast<double>(y0), static_cast<double>(y1)})
         block.cosine = std::min(block.cosine, glm::dot(block.middle, at(column, row)));
@@ -233,7 +234,7 @@ struct Packet<16> {
   }
 };
 
-/// V of one view sample, whose directions `dome` draws.
+/// Returns V of one view sample, with directions drawn by `dome`.
 template <int lanes, typename Dome>
 float visible_share(RTCScene scene, const ViewSample& sample, const Dome& dome, std::uint32_t count,
                     std::uint32_t seed) {
@@ -284,7 +285,7 @@ float visible_share(RTCScene scene, const ViewSample& sample, const Dome& dome, 
   return all > 0 ? static_cast<float>(seen / all) : 0;
 }
 
-/// Returns V of all view samples. Tables of a direction n are kept from one view sample to the next of its triangle.
+/// Returns V of all view samples. Tables for a normal are kept while consecutive view samples are on the same triangle.
 template <int lanes, typename Dome>
 std::vector<float> traced(RTCScene scene, const std::vector<ViewSample>& samples, const Dome& dome,
                           std::uint32_t count) {

@@ -2,7 +2,7 @@
 // A plain program on Embree's two-level instancing: the peer of bench/forest.py, for scenes under one sun.
 //   embree_forest SCENE.json SIZE SAMPLES
 // Reads the scene, builds one hierarchy a mesh and one over the instances, traces a ray through each pixel's centre and
-// SAMPLES (a square number) jittered shadow rays to the sun where its middle is above the surface, and prints the mean
+// SAMPLES (a square number) jittered shadow rays to the sun from surfaces that face its middle, and prints the mean
 // visibility of these pixels.
 
 #include "base/error.hpp"

@@ -12,8 +12,8 @@
 
 namespace penumbra::bench {
 
-/// Returns Embree's hierarchy over one mesh, in robust mode, of float positions less `origin`. To be released by the
-/// caller.
+/// Returns Embree's hierarchy over one mesh, in robust mode, with positions minus `origin` as floats. The caller must
+/// release it.
 inline RTCScene robust_scene(RTCDevice device, const mesh::TriangleSoup& soup,
                              const glm::dvec3& origin = glm::dvec3(0)) {
   RTCScene scene = rtcNewScene(device);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs all contestants on one subject in turns and compares their results with the oracle.
+// Runs all contestants on one subject in turns and compares their results with the oracle (rays on the same samples).
 
 #include "bench/entry.hpp"
 

@@ -36,7 +36,7 @@ struct Contestant {
   std::optional<compare::VisibilityError> error;  ///< of V against rays on the same light samples, judged pixels
   std::optional<compare::VisibilityError> error_to_reference;
   std::optional<compare::PairCounts> pairs;       ///< against rays; only for methods with masks
-  std::map<std::string, double> passes;           ///< milliseconds, of the last run
+  std::map<std::string, double> passes;           ///< milliseconds of each pass in the last run
   std::map<std::string, std::uint64_t> counters;  ///< of the last run
   std::optional<std::uint64_t> memory;            ///< bytes, peak on this subject so far; methods only
   int packet = 0;                  ///< rays traced together: the fastest of the sizes tried; ray casters only

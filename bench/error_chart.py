@@ -24,7 +24,7 @@ LEFT, TOP, LEGEND = 62, 40, 18
 
 
 def plain(text):
-    """A name as a Drawing's text: `_` and `*` mean themselves."""
+    """Returns a name as text for a Drawing, with `_` and `*` shown literally."""
     return text.replace("*", "∗").replace("_", "\\_")
 
 
@@ -33,7 +33,8 @@ def read_lines(path):
 
 
 def gathered(lines):
-    """{subject: {contestant: [(light samples, seconds, RMSE)]}}, the references, and how many points were left out."""
+    """Returns {subject: {contestant: [(light samples, seconds, RMSE)]}}, the references, and the number of points left
+    out."""
     panels, references, left_out = {}, [], 0
     for line in lines:
         error = line.get("errorToReference")
@@ -83,7 +84,7 @@ def chart(lines):
         for name, curve in curves.items():
             i = contestants.index(name)
             panel.curve([point[1:] for point in sorted(curve)], i % len(STYLES), dash_of(i))
-            if i == 0 or name == "plain-rays":  # the numbers of all would lie on one another
+            if i == 0 or name == "plain-rays":  # the numbers of all curves would overlap
                 for samples, seconds, rmse in curve:
                     panel.note(seconds, rmse, str(samples), offset=(5, -4))
     return d.finish()

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A forest of copies of one tree, and what a picture of it costs:
+"""A forest of copies of one tree, and the cost of a picture of it:
 python3 bench/forest.py PROGRAM FOLDER [TREES ...] [--size PIXELS] [--peer build/embree_forest --runs N]
                         [--results FILE.json --machine TEXT --conditions TEXT]
 
-Writes FOLDER/tree.ply (20,000 triangles: a trunk, branches and leaves of two triangles), and for each number of trees
-FOLDER/forest-N.json, in which it stands N times. Renders each and prints triangles, processor seconds, seconds and the
-largest resident set of the program and what it starts. With --peer, each is also rendered with 256 light samples, by
-this program and by the peer on Embree, in turns; medians of --runs count. --results writes them for bench/tables.py. Uses Python's standard
-library alone; the same bytes each time.
+Writes FOLDER/tree.ply (20,000 triangles: a trunk, branches, and leaves of two triangles each), and for each number of
+trees FOLDER/forest-N.json, a scene with N copies of it. Renders each scene and prints triangles, processor seconds,
+seconds, and the largest resident set of the program and its children. With --peer, each scene is also rendered with 256
+light samples, by PROGRAM and by the peer on Embree in turns; medians of --runs are printed. --results writes them for
+bench/tables.py. Uses only Python's standard library; the scenes are the same bytes each time.
 """
 import argparse
 import json
@@ -38,7 +38,7 @@ def along(a, t, b):
 
 
 def tube(vertices, faces, start, end, radii, sides):
-    """A cone without ends."""
+    """Adds a truncated cone without ends."""
     axis = unit(along(end, -1, start))
     u = unit(cross(axis, (0.3, 0.1, 0.9)))
     v = cross(axis, u)
@@ -54,7 +54,7 @@ def tube(vertices, faces, start, end, radii, sides):
 
 
 def tree(triangles=TRIANGLES, seed=7):
-    """Vertices and triangles of a tree 10 high, on the origin."""
+    """Returns vertices and triangles of a tree of height 10 at the origin."""
     chance = random.Random(seed)
     vertices, faces, twigs = [], [], []
     tube(vertices, faces, (0, 0, 0), (0, 9, 0), (0.35, 0.05), 12)
@@ -92,7 +92,8 @@ def write_ply(path, vertices, faces):
 
 
 def forest(trees, seed=11, size=512):
-    """The scene in which tree.ply stands so often, one in each cell of a square, seen from above its edge."""
+    """Returns the scene with that many copies of tree.ply, one in each cell of a square, seen from above the square's
+    edge."""
     chance = random.Random(seed)
     side = math.ceil(math.sqrt(trees))
     cell, half = 8.0, 4.0 * side
@@ -115,7 +116,7 @@ def forest(trees, seed=11, size=512):
 
 
 def measure(command):
-    """Processor seconds, seconds and the largest resident set in bytes of a program."""
+    """Runs a program and returns its processor seconds, its seconds and its largest resident set in bytes."""
     begin = time.monotonic()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times the work of a frame with a moved light: facings, silhouettes, wedges and lists, on host and device.
+// Times the structures that a moved light needs in each frame: facings, silhouettes, wedges and lists, on host and
+// device.
 
 #include "bench/frames.hpp"
 

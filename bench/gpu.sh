@@ -1,12 +1,13 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# gpu.sh [FILE.json] [DEVICE] [largest side] [BOTH [OTHERS]]: is every pass right on this machine's GPU, and how fast is it? Eight minutes at most. Runs
-# from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a built clone. DEVICE as for --device.
-# Four parts, in FILE.json (gpu.json): the self-test; the bits of exact methods on the device against those of the processor's vector
-# units; seconds and milliseconds a pass of exact and image-based methods from 512x512 to 4K; errors and seconds of all that
-# `compare` takes by itself, at two sizes. BOTH (exact methods with an option `engine`) and OTHERS replace the methods below: names with
-# spaces between. Exit 1 where something is wrong: bits that differ, or a run that fails. A run that is
-# out of time is not wrong.
+# gpu.sh [FILE.json] [DEVICE] [largest side] [BOTH [OTHERS]]: checks and times all passes on this machine's GPU, in at
+# most eight minutes. Runs from the unpacked tarball (cmake/tarball.sh), where nothing needs to be installed, or from a
+# built clone. DEVICE is that of --device.
+# Writes FILE.json (default gpu.json) in four parts: the self-test; whether exact methods give the same bits on the
+# device and on the processor's vector units; seconds, and milliseconds of each pass, of exact and image-based methods
+# from 512x512 to 4K; errors and seconds of the default methods of `compare`, at two sizes. BOTH (exact methods with an
+# option `engine`) and OTHERS replace the methods below: names separated by spaces. The exit code is 1 if bits differ or
+# a run fails; a run that is out of time does not count as failed.
 set -uo pipefail
 file=${1:-gpu.json} device=${2:-} largest=${3:-3840}
 read -ra both <<<"${4:-edge-scatter view-sample depth-complexity}"
@@ -19,7 +20,7 @@ else
   program=$here/../build/penumbra scenes=$here/../scenes commit=$(git -C "$here" describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null)
 fi
 [[ -x $program ]] || { echo "gpu.sh: no program at $program" >&2; exit 4; }
-# Containers that only mount NVIDIA's driver name it nowhere.
+# Containers that only mount NVIDIA's driver do not tell the loaders where it is.
 nvidia=/usr/local/nvidia/share
 [[ ! -e $nvidia/vulkan/icd.d/nvidia_icd.json ]] || export VK_DRIVER_FILES=${VK_DRIVER_FILES:-$nvidia/vulkan/icd.d/nvidia_icd.json}
 [[ ! -e $nvidia/glvnd/egl_vendor.d/10_nvidia.json ]] ||
@@ -29,7 +30,7 @@ trap 'rm -rf "$work"' EXIT
 on=() wrong=0
 [[ -z $device ]] || on=(--device "$device")
 say() { printf '%4d s  %s\n' "$SECONDS" "$*" >&2; }
-# failed WHAT CODE: says so, with what the program said; something is wrong unless `timeout` ended the run (124).
+# failed WHAT CODE: reports a failed run with the program's output; sets `wrong` unless `timeout` ended the run (124).
 failed() {
   if (($2 == 124)); then say "$1: out of time"; else wrong=1; say "$1: exit $2"; fi
   cat "$work/errors.txt" >&2
@@ -44,7 +45,8 @@ self_test=$?
 ((self_test == 0)) || failed "self-test" $self_test
 [[ -s $work/self-test.json ]] || echo null >"$work/self-test.json"
 
-# picture NAME METHOD SIZE SAMPLES SCENE UNTIL: one run; its stats are NAME.json, and its bits NAME.bits where the method has any.
+# picture NAME METHOD SIZE SAMPLES SCENE UNTIL: renders one picture; writes its stats to NAME.json, and its bits to
+# NAME.bits if NAME contains -bits-.
 picture() {
   local bits=()
   [[ $1 != *-bits-* ]] || bits=(--bits "$work/$1.bits")

@@ -21,7 +21,7 @@ def entry_of(run):
 
 
 def exact_rows(gpu):
-    """Renders by exact methods on the GPU, in one process each."""
+    """Yields rows of pictures by exact methods on the GPU, one process each."""
     for run in gpu["speed"]:
         if run["options"].get("engine") == "vulkan":
             width, height = run["size"]
@@ -29,7 +29,7 @@ def exact_rows(gpu):
 
 
 def method_rows(gpu):
-    """Methods of `compare`, with a column of each size."""
+    """Yields rows of methods of `compare`, with columns for each size."""
     sizes = gpu["methods"]
     for runs in zip(*(one["methods"] for one in sizes)):
         row = [f"`{entry_of(runs[0])}`", runs[-1]["lights"][0]["error"]["rmse"]]

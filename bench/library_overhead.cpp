@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what a call of the library costs beyond the phases that the picture's statistics name: JSON, a row for each
-// case.
+// Prints the time that a call of the library takes beyond the phases in the picture's statistics, as JSON with a row
+// for each case.
 //   library_overhead [SIDE [CALLS]]
-// A renderer of a box over a floor renders square pictures of SIDE pixels again and again; between calls nothing
+// A kept renderer renders square pictures of a box over a floor, SIDE pixels wide. Between calls either nothing
 // changes, or the light, the box or the camera moves. Times are medians of CALLS calls after four discarded ones.
 
 #include <penumbra/penumbra.hpp>
@@ -32,7 +32,8 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-/// Corners of the box [-1, 1] × [0, 2] × [-1, 1] by the bits x, y, z of their number, and its faces turned outward.
+/// Adds the box [-1, 1] × [0, 2] × [-1, 1]. The bits of a corner's index give its x, y and z; faces are oriented
+/// outward.
 penumbra::MeshId add_box(penumbra::Scene& scene) {
   std::vector<penumbra::Vector> corners(8);
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -73,7 +74,7 @@ const std::vector<Case>& cases() {
   return all;
 }
 
-/// `samples`: light samples, by the method that the library chooses; 0: exact areas.
+/// Measures one case. `samples`: light samples, by the method that the library chooses; 0: exact areas.
 nlohmann::json measured(const Case& one, std::uint32_t samples, std::uint32_t side, int calls) {
   penumbra::Scene scene;
   add_floor(scene);

@@ -23,7 +23,7 @@ Json to_json(const compare::VisibilityError& error) {
           {"mean", error.mean}, {"p999", error.p999}, {"over05", error.over05}};
 }
 
-/// Returns seconds of the contestant ÷ those of a peer; nullopt if the peer did not run.
+/// Returns the contestant's seconds divided by those of a peer; nullopt if the peer did not run.
 std::optional<double> ratio_to(const Entry& entry, const std::string& peer, const Contestant& contestant) {
   const Contestant* other = find_contestant(entry, peer);
   if (other == nullptr) return std::nullopt;

@@ -8,7 +8,8 @@
 
 namespace penumbra::bench {
 
-/// Return the table on stdout, one row for each contestant. `penumbra`: the reference judges pixels in penumbra alone.
+/// Return the table on stdout, one row for each contestant. `penumbra`: only pixels in penumbra are compared with the
+/// reference.
 std::string table_head(bool penumbra);
 std::string table_rows(const Entry& entry);
 

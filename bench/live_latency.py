@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures how fast `penumbra view` answers: bare clients drag the camera and a light, one after the other and both at once, and note
-when pictures come, what they cost, and whether each is whole. The same drags are then made by a pointer in the page itself, in headless
-Chromium where it is installed.
+"""Measures how fast `penumbra view` answers: clients without a page drag the camera and a light, one after the other and
+both at once, and note the times of pictures, their cost, and whether each is complete. The same drags are then made by a
+pointer in the page itself, in headless Chromium if that is installed.
   live_latency.py PROGRAM SCENE… [--seconds S] [--minutes M] [--out FILE.json]
---minutes: the first scene's camera and light are then dragged for so long, and memory is noted each ten seconds. Without --out
-a table is printed; FILE.json is one of bench/results/."""
+--minutes: for this time the first scene's camera and light are then dragged, and memory is noted every ten seconds.
+Without --out a table is printed; FILE.json is one of bench/results/."""
 import argparse
 import json
 import math
@@ -67,8 +67,8 @@ class Use:
 
 
 class Drag:
-    """Sends a change each sixtieth of a second, and notes what comes: times of pictures, and how long each change waited for the first
-    picture that shows it or a later one."""
+    """Sends a change every sixtieth of a second, and notes the times of pictures, and how long each change waited for the
+    first picture that shows this change or a later one."""
 
     def __init__(self, client, seconds, message, each=lambda: None):
         sent, self.came, self.delays, self.torn, number = {}, [], [], 0, 0
@@ -103,7 +103,8 @@ class Drag:
 
 
 class PageDrag(Drag):
-    """A drag by the pointer on the page, with a move each sixtieth of a second. The page says which input a picture shows (data-stamp)."""
+    """A drag by the pointer on the page, with a move every sixtieth of a second. The page's data-stamp tells which
+    input a picture shows."""
 
     NOTES = """(() => { const root = document.documentElement.dataset; window.notes = []; window.moves = []; window.released = 0;
         addEventListener('pointermove', (event) => { if (event.buttons) moves.push(event.timeStamp); }, true);
@@ -167,7 +168,8 @@ def measure(program, scene, seconds):
 
 
 def measure_two(program, scene, seconds):
-    """Two clients at once, one with the camera and one with a light: what each sees of its own moves."""
+    """Measures two clients at once, one that drags the camera and one that drags a light: pictures of each client's own
+    moves."""
     with Server(program, scene, "--size", "512x512") as server:
         clients = [Client(server).begin() for _ in range(2)]
         clients[0].final()
@@ -184,7 +186,7 @@ def measure_two(program, scene, seconds):
 
 
 def measure_page(program, scene, seconds):
-    """The page in headless Chromium, which takes its part of the processor, too."""
+    """Measures the page in headless Chromium, which also takes processor time."""
     name, rows = pathlib.Path(scene).name, []
     middle = "(() => { const b = document.querySelector('%s').getBoundingClientRect(); return [b.x + b.width / 2, b.y + b.height / 2]; })()"
     with Browser() as browser, Server(program, scene, "--size", "512x512") as server:
@@ -198,12 +200,12 @@ def measure_page(program, scene, seconds):
             use = Use(server.process)
             drag = PageDrag(browser, seconds, browser.ask(middle % handle), across)
             rows.append(drag.row(f"`{name}`, the page in Chromium, {what}", use.since(), use.memory()))
-        browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it
+        browser.call("Page.navigate", url="about:blank")  # otherwise the page would try to reconnect
     return rows
 
 
 def measure_long(program, scene, minutes):
-    """Memory, each ten seconds after the first minute."""
+    """Measures memory every ten seconds after the first minute."""
     with Server(program, scene, "--size", "512x512") as server:
         client = Client(server).begin()
         client.final()
@@ -240,7 +242,7 @@ def main():
             said = f" In the long drag {count:,} pictures came; memory after a minute {notes[0]:.0f} MiB, then {min(notes):.0f} to {max(notes):.0f} MiB."
     loads.append(os.getloadavg()[0])
     load = f"{min(loads):.0f} to {max(loads):.0f}"
-    # The program and the clients are in the load: an idle machine shows three at most.
+    # The program and the clients add to the load: on an otherwise idle machine it is at most three.
     busy = [what for what, one in (("", loads[0]), (" in the long drag", loads[-1])) if one > 4]
     others = f"Other programs were at work on the same threads{busy[0]}: an idle machine does better. " if busy else ""
     if not arguments.out:

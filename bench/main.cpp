@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// penumbra-bench: runs the measurement that the options ask for. Each writes the rows of its table as they are
-// measured, and lines of JSON if there is a file for them.
+// penumbra-bench: runs the requested measurement. Each measurement prints the rows of its table as they are measured,
+// and writes lines of JSON if a file is given for them.
 
 #include "base/error.hpp"
 #include "base/memory.hpp"

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables whose cells are measured: what a cell is, and how bench/results/NAME.json is made of a table. bench/page_tables.py declares the tables.
+"""Tables with measured cells: kinds of cells, and writing a table to bench/results/NAME.json. bench/page_tables.py
+declares the tables.
 
-A cell is a text or an object with `value(bench)`. Cells that ask one `penumbra compare` for different methods share its run: `Bench` first collects the
-methods that all tables want of each run. Uses Python's standard library alone."""
+A cell is a text or an object with `value(bench)`. Cells that need different methods from the same `penumbra compare`
+share one run: `Bench` first collects the methods that all tables need from each run. Uses only Python's standard
+library."""
 
 import json
 import os
@@ -19,7 +21,7 @@ RESULTS = ROOT / "bench" / "results"
 
 @dataclass(frozen=True)
 class Run:
-    """One `penumbra compare`, except for its methods; `size` is the scene's own where none is given."""
+    """One `penumbra compare` without its list of methods; `size`: None for the scene's own."""
     scene: str
     size: str | None
     reference: tuple
@@ -50,7 +52,7 @@ class Compared:
 
 @dataclass(frozen=True)
 class ProcessorSeconds:
-    """User and system time of a whole `penumbra render`: the least of three."""
+    """User and system time of a whole `penumbra render`, the least of three runs."""
     scene: str
     entry: str
     options: tuple
@@ -71,7 +73,7 @@ class Megabytes:
 
 @dataclass(frozen=True)
 class Answer:
-    """A figure of the JSON that a command prints, or writes where its options end with --json."""
+    """A figure from the JSON that a command prints, or writes to a file if its options end with --json."""
     command: tuple
     of: object
 
@@ -81,7 +83,8 @@ class Answer:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns' heads and formats; rows of cells, or a function of the bench that makes them; `merged`: rows that differ in their first cell alone are one."""
+    """Columns' heads and formats, and rows of cells, or a function of the bench that makes the rows; `merged`: rows
+    that differ only in their first cell become one."""
     title: str
     conditions: str
     heads: tuple
@@ -92,7 +95,8 @@ class Table:
 
 @dataclass
 class Bench:
-    """Runs what the cells of some tables need. `scenes` are those that are not shipped: functions that give their JSON."""
+    """Makes the runs that the cells of some tables need. `scenes`: functions that return the JSON of scenes that are
+    not in scenes/."""
     program_path: Path
     folder: Path
     scenes: dict
@@ -106,14 +110,14 @@ class Bench:
         return subprocess.run([self.program_path, *arguments, "--quiet"], check=True, capture_output=True, text=True).stdout
 
     def render(self, scene, *options):
-        """The file that `penumbra render` writes, and the processor seconds that it takes."""
+        """Returns the file that `penumbra render` writes, and the processor seconds that it takes."""
         out, before = self.folder / "rendered.exr", os.times()
         self.program("render", self.scene(scene), "-o", out, *options)
         after = os.times()
         return out, after.children_user + after.children_system - before.children_user - before.children_system
 
     def printed(self, test, tests, pattern):
-        """The groups of each line that a test prints and that fits the pattern; those that are numbers as numbers."""
+        """Returns the groups of each line of a test's output that fits the pattern; texts of numbers are converted."""
         out = subprocess.run([self.program_path.with_name(test), f"--gtest_filter={tests}"], check=True, capture_output=True, text=True).stdout
         found = [tuple(map(number, groups)) for groups in re.findall(pattern, out, re.M)]
         if not found:
@@ -121,7 +125,7 @@ class Bench:
         return found
 
     def lines(self, *options):
-        """The JSON lines of a run of penumbra-bench."""
+        """Returns the JSON lines of a run of penumbra-bench."""
         out = self.folder / "lines.json"
         out.unlink(missing_ok=True)
         subprocess.run([self.program_path.with_name("penumbra-bench"), *options, "--json", out], check=True, capture_output=True)
@@ -139,7 +143,7 @@ class Bench:
             self.wanted.setdefault(cell.run, {})[cell.entry] = None
 
     def compared(self, run):
-        """The entries of metrics.json by one run with all methods that any cell asks of it."""
+        """Returns the entries of metrics.json from one run with all methods that any cell needs from it."""
         if run not in self.done:
             entries, out = list(self.wanted[run]), self.folder / "compared"
             print(f"{run.scene}: {' '.join(run.options())}: {', '.join(entries)}", flush=True)
@@ -175,7 +179,7 @@ def head_commit():
 
 
 def rounded(value):
-    """To four significant digits: the pages print fewer."""
+    """Rounds to four significant digits; the pages print fewer."""
     return float(f"{value:.4g}") if isinstance(value, float) else value
 
 
@@ -184,7 +188,7 @@ def printed(row, formats):
 
 
 def merged(rows, formats):
-    """Rows whose cells behind the first are printed alike as one row, whose first cell lists theirs."""
+    """Merges rows whose cells after the first are printed alike; the first cell lists the first cells of all."""
     groups = {}
     for row in rows:
         groups.setdefault(printed(row[1:], formats[1:]), []).append(row)

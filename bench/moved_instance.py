@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a picture costs when one tree of a forest moves, in a kept Renderer: processor seconds of the first picture, of the same again, and
-of one after a move. The scenes are those of forest.py.
+"""Measures pictures of a forest in which one tree moves, in a kept Renderer: processor seconds of the first picture, of
+a repetition without changes, and of a picture after a move. The scenes are those of forest.py.
 
     bench/moved_instance.py MODULES FOLDER [TREES …] [--results FILE.json --machine TEXT --conditions TEXT]
 
@@ -24,7 +24,7 @@ MOVES, SIZE = 5, (128, 128)
 
 
 def moved(places, number, step):
-    """The matrix of an instance, moved along x by `step`."""
+    """Returns the matrix of an instance that is moved along x by `step`."""
     one = places[number]
     turn, scale = radians(one["rotate"][1]), one["scale"]
     x, y, z = one["translate"]

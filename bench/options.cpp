@@ -103,7 +103,7 @@ std::string contestant_name(const session::MethodEntry& entry) {
 
 void add_methods(std::vector<session::MethodEntry>& methods, const std::string& text) {
   for (session::MethodEntry& entry : session::parse_methods(text)) {
-    if (entry.from_group && entry.name == session::ray_judge().name) continue;  // runs in any case
+    if (entry.from_group && entry.name == session::ray_judge().name) continue;  // always runs
     entry.label = contestant_name(entry);
     methods.push_back(std::move(entry));
   }

@@ -42,14 +42,14 @@ def shipped(name):
 
 
 def ball(half):
-    """scenes/papers/ball.json under a square light of this half-size."""
+    """Returns scenes/papers/ball.json with a square light of this half-size."""
     scene = shipped("papers/ball")
     scene["lights"][0]["rectangle"] |= {"halfU": [half, 0, 0], "halfV": [0, 0, half]}
     return scene
 
 
 def near_light():
-    """Things in front of a panel of light that stands on the floor."""
+    """Returns a scene of objects in front of a luminous panel that stands on the floor."""
     meshes = (("floor", [0, 0, 0.5], [2.5, 0, 0], [0, 0, -1.5]), ("board", [-0.6, 0.25, -0.7], [0.25, 0, 0.1], [0, 0.25, 0]),
               ("post", [0.15, 0.6, -0.75], [0.06, 0, 0], [0, 0.6, 0]), ("shelf", [0.8, 0.12, -0.65], [0.3, 0, 0], [0, 0.03, 0.2]))
     return {"format": "penumbra-scene/1", "size": [360, 270], "camera": {"eye": [0.3, 3, 1.3], "target": [0.1, 0, -0.2], "verticalFov": 38},
@@ -58,7 +58,8 @@ def near_light():
 
 
 def defect(name):
-    """A part of the generator of broken meshes on a floor under a square light."""
+    """Returns a scene of one broken mesh with this defect, from the shape generator, on a floor under a square
+    light."""
     return {"format": "penumbra-scene/1", "size": [192, 144], "camera": {"eye": [-1.6, 2.2, 2.6], "target": [0.15, 0.45, 0], "verticalFov": 40},
             "meshes": [{"name": "floor", "quad": {"center": [0, 0, 0], "halfU": [3, 0, 0], "halfV": [0, 0, -3]}},
                        {"name": "part", "shape": {"type": "broken", "defects": [name], "size": 4, "center": [0, 0.6, 0], "halfExtent": 0.5}}],
@@ -66,7 +67,7 @@ def defect(name):
 
 
 def lamps():
-    """scenes/bunny.json under 24 small lamps, six by four, in place of one."""
+    """Returns scenes/bunny.json with 24 small lamps, six by four, in place of one."""
     scene = shipped("bunny")
     scene["lights"] = [{"name": f"lamp {6 * row + column}", "radiance": [22, 21, 19],
                         "rectangle": {"center": [column - 2, 5, row - 1], "halfU": [0.1, 0, 0], "halfV": [0, 0, 0.1]}}
@@ -75,7 +76,7 @@ def lamps():
 
 
 def boards():
-    """Boards that face the eye of the scene of map fits, the larger the farther they are, over a floor."""
+    """Returns boards over a floor that face the eye of the scene of map fits; farther boards are larger."""
     quads = [([x * (6 - z) * 0.22, 0.2 + 0.02 * k, z], [(6 - z) * 0.1, 0, (6 - z) * 0.1], [0, (6 - z) * 0.15, 0])
              for k, z in enumerate((3, 1.5, -1, -4, -8, -14, -22, -34)) for x in (-1, 1)]
     quads.append(([0, -4, -20], [20, 0, 0], [0, 0, -30]))
@@ -83,8 +84,8 @@ def boards():
 
 
 def tilted(meshes, degrees, towards):
-    """The camera of the scene of map fits, under a lamp at 40 from the point 12 before the eye, with rays at an angle to the view: from behind the eye, or
-    towards it."""
+    """Returns a scene with the camera of the scene of map fits, and a lamp 40 from the point 12 in front of the eye.
+    Its rays are at an angle to the view, and come from behind the eye, or go towards it."""
     scene = map_fits_pictures.scene()
     eye, target = scene["camera"]["eye"], scene["camera"]["target"]
     length = math.dist(eye, target)
@@ -107,7 +108,7 @@ SCENES = {"near-light": near_light, "lamps": lamps, "map-fits": map_fits_picture
           **{f"ball-{half}": lambda half=half: ball(half) for half in (*HALVES, 0.3, 2)}, **{f"defect-{name}": lambda name=name: defect(name) for name in DEFECTS}}
 
 
-# Columns: a head, a method and what is asked of it, a format
+# Columns: head, method, requested figure, format
 
 def rmse(head, entry):
     return head, entry, RMSE, ".4f"
@@ -139,14 +140,14 @@ def variants(name):
 
 
 def by_scene(title, conditions, scenes, columns, size=SIZE, light_samples=None, *, reference=AREAS, names=None, merged=False):
-    """A row for each scene."""
+    """Returns a table with a row for each scene."""
     runs = {scene: Run(scene, size, reference, light_samples) for scene in scenes}
     return Table(title, conditions, ("scene", *(head for head, *_ in columns)), (None, *(form for *_, form in columns)),
                  tuple(((names or {}).get(scene, scene), *(Compared(run, entry, of) for _, entry, of, _ in columns)) for scene, run in runs.items()), merged)
 
 
 def by_entry(title, conditions, heads, rows, columns):
-    """A row for each (labels, run, method); columns are (head, what is asked, format)."""
+    """Returns a table with a row for each (labels, run, method); columns are (head, requested figure, format)."""
     return Table(title, conditions, (*heads, *(head for head, *_ in columns)), (*(None for _ in heads), *(form for *_, form in columns)),
                  tuple((*labels, *(Compared(run, entry, of) for _, of, _ in columns)) for labels, run, entry in rows))
 
@@ -164,7 +165,7 @@ def entries_of(run_of, entries):
     return [((code(entry),), run_of, entry) for entry in entries]
 
 
-# Tables of one page each that need more than a line
+# Tables that are used by one page each and need more than a line
 
 def aliasing(method, name):
     return method["counters"][name] / method["counters"]["aliasingPixels"]
@@ -194,7 +195,8 @@ def tilted_views():
 
 
 def change_by(cause):
-    """The part of a cause, to the four digits of the table, so that what is nothing there has no sign."""
+    """Returns a function for the change by one cause, rounded to the table's four digits, so that a change printed as 0
+    has no sign."""
     def of(method):
         change = method["errorBudget"][cause]
         return None if change is None else round(change, 4) + 0.0

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/predicates.md: lines that tests of maps_test print, claim by claim. Uses Python's standard library alone."""
+"""Makes the table of docs/predicates.md from lines that tests of maps_test print, claim by claim. Uses only Python's
+standard library."""
 
 import re
 import subprocess
 
 from measured_tables import Table
 
-# Claim, the test that checks it, a pattern of the lines that are shown; all where it is empty.
+# Claim, the test that checks it, and a pattern of the lines to show (empty: all lines).
 CLAIMS = (
     ("I2", "SoftShadowMap.AtATexelOfTheReceiversItIsBackproject", ""),
     ("I7", "MapsBitmask.NothingVisibleIsHiddenByQuadsAndTrianglesOfAConvexBody", ""),
@@ -74,7 +75,7 @@ CLAIMS = (
 
 
 def lines_of(output):
-    """Returns the lines that each test prints, each once, without the claims' names and with single spaces."""
+    """Returns the lines that each test prints, without repetitions and claims' names, and with single spaces."""
     printed, test = {}, None
     for line in output.splitlines():
         if begun := re.match(r"\[ RUN      \] (\S+)", line):

@@ -9,7 +9,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-# A process begins with the largest resident set of the one that started it. So a small process starts what is measured, and waits for it.
+# A new process inherits the largest resident set of its parent as its own. So a small process starts the measured one,
+# and waits for it.
 STARTER = """
 import json, os, subprocess, sys
 process = subprocess.Popen(sys.argv[2:], stdin=subprocess.DEVNULL)
@@ -26,7 +27,7 @@ class Usage:
 
 
 def usage_of(command, environment=None):
-    """Runs `command`, which has to end with exit code 0."""
+    """Runs `command`, which must exit with code 0, and returns its processor time and memory."""
     command = [str(part) for part in command]
     with tempfile.TemporaryFile() as log, tempfile.NamedTemporaryFile("r") as result:
         subprocess.run([sys.executable, "-S", "-c", STARTER, result.name, *command], stdin=subprocess.DEVNULL, stdout=log, stderr=log, env=environment, check=True)

@@ -61,12 +61,12 @@ std::vector<std::uint32_t> penumbra_pixels(visibility::Method& rays, const Groun
   return pixels;
 }
 
-/// Returns whether contestants are asked about pixels of this class.
+/// Returns whether contestants evaluate pixels of this class.
 bool asks(PixelClass c) {
   return c == PixelClass::judged || c == PixelClass::horizon || c == PixelClass::behind;
 }
 
-/// Returns whether V is the same, 0 or 1, at all view samples of a block that contestants are asked about.
+/// Returns whether V is 0 at all evaluated view samples of a block, or 1 at all of them.
 bool is_trivial(const Question& question, std::uint32_t left, std::uint32_t top) {
   const visibility::ViewSamples& samples = question.ground.samples;
   bool lit = false, dark = false;

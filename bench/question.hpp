@@ -43,16 +43,17 @@ struct ReferenceVisibility {
   std::vector<float> visibility;      ///< one for each pixel
   std::vector<std::uint32_t> pixels;  ///< compared pixels
 };
-/// Returns the reference. By rays: Owen-scrambled Sobol samples in passes of up to 4096, each with a seed of its own,
-/// over judged pixels. By areas: over pixels chosen among the judged pixels that are in penumbra by 64 light samples.
+/// Returns the reference. By rays: Owen-scrambled Sobol samples in passes of up to 4096, each with a different
+/// seed, over judged pixels. By areas: over pixels chosen among those judged pixels that are in penumbra according to
+/// 64 light samples.
 ReferenceVisibility make_reference(const Ground& ground, const Options& options, const render::Machine& machine);
 /// Returns whether the reference computes areas.
 bool takes_area(const Options& options);
 
-/// Returns the pixels to be traced by the fair peer: those of the 8 × 8 blocks in which V is strictly between 0 and 1
-/// somewhere, or not uniform, among the evaluated view samples (no background, emitter or receiver without shadow). All
-/// other blocks are lit or dark throughout, up to the resolution of the light samples. One entry for each pixel, 1
-/// where a trace is needed.
+/// Returns the pixels that nontrivial-rays must trace: those of the 8 × 8 blocks in which V of the evaluated view
+/// samples (no background, emitter or receiver without shadow) is somewhere strictly between 0 and 1, or not uniform.
+/// All other blocks are completely lit or dark, up to the resolution of the light samples. The result has one entry for
+/// each pixel, 1 where a trace is needed.
 std::vector<std::uint8_t> nontrivial_pixels(const Question& question);
 
 }  // namespace penumbra::bench

@@ -70,7 +70,7 @@ Runner::Seconds RayRunner::run_once(const Question& question, std::vector<float>
   watch.restart();
   rays_.rays().evaluate(chosen_, visibility);
   seconds.evaluate = watch.seconds();
-  if (peer_.work == RayWork::nontrivial) {  // the other V are given as input, at no cost in time
+  if (peer_.work == RayWork::nontrivial) {  // V of all other pixels is given, and takes no time
     for (std::size_t i = 0; i < visibility.size(); ++i) {
       if (chosen_.triangle[i] == ViewSamples::kBackground) visibility[i] = question.truth[i];
     }

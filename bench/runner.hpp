@@ -47,8 +47,8 @@ class Runner {
   std::vector<float> visibility_;
 };
 
-/// Method of the program, on a Vulkan device of its own (if needed), because a device counts its allocated memory in
-/// total, not for each method.
+/// Method of the program, on a separate Vulkan device (if it needs one), because a device counts its allocated memory
+/// in total, not for each method.
 class MethodRunner final : public Runner {
  public:
   MethodRunner(const session::MethodEntry& entry, const Ground& ground, const std::string& device);
@@ -86,7 +86,7 @@ class FastestRays {
   double mesh_ = 0;
 };
 
-/// Ray caster with which methods are compared.
+/// Ray caster on Embree, a peer with which methods are compared.
 class RayRunner final : public Runner {
  public:
   RayRunner(Peer peer, const Ground& ground, FastestRays& rays);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tables of docs/scaling.md and docs/domes.md: processor seconds, memory and counters of whole runs of `penumbra render`. Uses Python's standard library alone."""
+"""Tables of docs/scaling.md and docs/domes.md: processor seconds, memory and counters of whole runs of `penumbra
+render`. Uses only Python's standard library."""
 
 import json
 import os
@@ -21,7 +22,7 @@ def terrain(cells):
 
 
 def run(bench, scene, size, *options):
-    """Processor seconds, and stats.json."""
+    """Returns processor seconds, and the content of stats.json."""
     path, stats = bench.folder / "scaling.json", bench.folder / "stats.json"
     path.write_text(json.dumps(scene), encoding="utf-8")
     before = os.times()

@@ -78,7 +78,7 @@ struct Glb {
   }
 };
 
-/// Gives every node accepted by `moves` a parent that moves on a circle once in all frames, `reach` wide.
+/// Gives every node accepted by `moves` a parent that moves once around a circle of size `reach` during all frames.
 template <typename Moves>
 void move_nodes(Glb& glb, std::uint32_t frames, float reach, Moves&& moves) {
   constexpr int kKeys = 33;

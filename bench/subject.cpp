@@ -120,9 +120,9 @@ void resize_first_light(scenes::Scene& scene, double half) {
   rectangle.half_v = glm::normalize(rectangle.half_v) * half;
 }
 
-/// Reshapes a rectangle light with the same area: a disk, an ellipse along the rectangle's sides, one axis twice the
-/// other, or an affinely regular hexagon; a sphere as wide as the disk; or a sun that shines from the light to the
-/// middle of the meshes, with the apparent size of the disk seen from there.
+/// Replaces a rectangle light by one of the same area: a disk; an ellipse along the rectangle's sides with one axis
+/// twice the other; or an affine image of a regular hexagon. A sphere is as wide as the disk. A sun shines from the
+/// light to the middle of the meshes, with the apparent size of the disk seen from there.
 void reshape_first_light(scenes::Scene& scene, visibility::LightKind kind) {
   const scenes::Rectangle from = first_rectangle(scene, "--light");
   const glm::dvec3 normal = glm::cross(from.half_u, from.half_v);
@@ -151,7 +151,7 @@ void reshape_first_light(scenes::Scene& scene, visibility::LightKind kind) {
     return;
   }
   scenes::Polygon hexagon;
-  const double radius = std::sqrt(8 / (3 * std::sqrt(3.0)));  // of a regular hexagon with area 4
+  const double radius = std::sqrt(8 / (3 * std::sqrt(3.0)));  // circumradius of a regular hexagon with area 4
   for (int i = 0; i < 6; ++i) {
     const double angle = i * std::numbers::pi / 3;
     hexagon.vertices.push_back(from.center + radius * (std::cos(angle) * from.half_u + std::sin(angle) * from.half_v));
@@ -183,7 +183,7 @@ std::vector<Subject> make_subjects(const SubjectRequest& request) {
   for (const std::string& name : names) {
     const Subject scene = find_subject(name);
     std::vector<Subject> its{scene};
-    const bool more = shipped && request.halves.empty() && name == "bunny";  // the bunny's own half size, and two more
+    const bool more = shipped && request.halves.empty() && name == "bunny";  // in addition to the bunny's own half size
     multiply(its, more ? std::vector<std::string>{"0.3", "2"} : request.halves, "half",
              [](Subject& subject, const std::string& half) { subject.light_half = parse_half(half); });
     if (more) its.insert(its.begin(), scene);
@@ -208,8 +208,8 @@ scenes::Scene read_subject(const Subject& subject) {
 
 namespace {
 
-/// Returns the division of half of the triangles in two factors whose second is nearest to `ratio` times the first;
-/// neither below three. Returns nullopt if there is none.
+/// Divides half of the number of triangles into two factors of at least three, the second as near as possible to
+/// `ratio` times the first. Returns nullopt if there are none.
 std::optional<std::pair<std::uint32_t, std::uint32_t>> divided(std::uint64_t triangles, double ratio) {
   constexpr std::uint64_t kFewest = 3;
   const double wanted = std::sqrt(static_cast<double>(triangles) / 2 / ratio);
@@ -226,7 +226,7 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> divided(std::uint64_t tri
   return std::pair(static_cast<std::uint32_t>(best), static_cast<std::uint32_t>(half / best));
 }
 
-/// Returns a scene with `shape` on a floor, or above, under a square light, seen by a camera like that of the default
+/// Returns a scene with `shape` on or above a floor, under a square light, seen by a camera like that of the default
 /// scene.
 scenes::Scene scene_around(const std::string& name, const mesh::TriangleSoup& shape, std::uint64_t triangles) {
   scenes::Scene scene;

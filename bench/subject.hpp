@@ -49,7 +49,7 @@ mesh::KnotShape knot_of(std::uint64_t triangles);
 /// UsageError if there is none: a sphere has 2 · segments · (rings − 1) triangles.
 mesh::SphereShape sphere_of(std::uint64_t triangles);
 
-/// Returns the scene of sphere_of(triangles), arranged as knot_scene().
+/// Returns the scene of sphere_of(triangles), arranged like knot_scene().
 scenes::Scene sphere_scene(std::uint64_t triangles);
 
 /// Returns the scene of knot_of(triangles) above a floor under a square light, seen by a camera like that of the

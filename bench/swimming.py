@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures which methods swim: what a method's error adds to movement, in three short animations of shipped scenes, into results/swimming.json.
+"""Measures which methods swim: the movement that changes of a method's error add to shadows, in three short animations
+of shipped scenes. Writes results/swimming.json.
 
   bench/swimming.py [PROGRAM]
 
-Then bench/tables.py writes the table of docs/swimming.md. In one animation the light moves, in one the camera, in one a body. Flicker and pops are those of
-`penumbra compare --frames` against exact areas (docs/definitions.md): they depend on no machine and no load. Uses Python's standard library alone."""
+Then bench/tables.py writes the table of docs/swimming.md. In one animation the light moves, in one the camera, in one a
+body. Flicker and pops are those of `penumbra compare --frames` against exact areas (docs/definitions.md): they do not
+depend on machine and load. Uses only Python's standard library."""
 
 import json
 import os
@@ -25,19 +27,19 @@ SWIMS, QUIET, OFTEN = 1 / 64, 1 / 256, 0.01
 
 
 FPS = 24
-# The node that moves, and by how much a frame.
+# Description, scene, moving node, and its movement per frame.
 SEQUENCES = (("the light moves (`contact`)", "contact", "key", (STEP, 0, 0.6 * STEP)), ("the camera moves (`fusion`)", "fusion", "camera", (STEP, 0.3 * STEP, 0)),
              ("a body rises (`contact`)", "contact", "ball, touches in a point", (0.6 * STEP, STEP, 0.3 * STEP)))
 
 
 def animated(program, scene, moves, by, path):
-    """Writes the scene as a GLB in which one node moves at a constant speed, from its place at frame 0."""
+    """Writes the scene as a GLB in which one node moves at constant speed, from its original place at frame 0."""
     subprocess.run([program, "--quiet", "convert", ROOT / "scenes" / f"{scene}.json", "-o", path], check=True)
     add_motion(path, moves, [FPS * x for x in by], place_at=0)
 
 
 def entries(program):
-    """Every method by name, maps of one size."""
+    """Returns the names of all methods, with the same size of all maps."""
     methods = json.loads(subprocess.run([program, "methods", "--json"], check=True, capture_output=True, text=True).stdout)
     methods = methods["methods"] if isinstance(methods, dict) else methods
     for method in methods:
@@ -48,7 +50,7 @@ def entries(program):
 
 
 def measured(program, scene, moves, by, methods, folder):
-    """Flicker and the share of steps that pop, for each method."""
+    """Returns flicker, and the fraction of steps that pop, for each method."""
     animated(program, scene, moves, by, folder / "scene.glb")
     subprocess.run([program, "compare", folder / "scene.glb", "--frames", f"1-{FRAMES}", "--fps", str(FPS), "-o", folder / "out", "--methods", ",".join(methods),
                     "--reference", "exact", "--size", SIZE, "--light-samples", "64", "--runs", "1", "--quiet"], check=True, stdout=subprocess.DEVNULL)

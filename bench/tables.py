@@ -37,7 +37,8 @@ def decimals(value):
 
 
 def column_texts(values, form):
-    """Cells as texts: by the column's format, or all with the decimals of the longest; large whole numbers with commas."""
+    """Returns a column's cells as texts: by the column's format, or all with as many decimals as the longest; large
+    integers get commas."""
     places = max((decimals(value) for value in values if isinstance(value, float)), default=0)
     if form is None:
         form = ".1e" if any("e" in repr(value) for value in values if isinstance(value, float)) else f".{places}f"
@@ -56,7 +57,8 @@ def table(data):
 
 
 def block(name):
-    """The table of one file. Tables of drawn figures are made of the figures' numbers, which are kept with them."""
+    """Returns the table of one file. Tables of drawn figures are made from the figures' numbers, which are stored with
+    the figures."""
     if name not in DRAWN:
         return table(read(RESULTS / f"{name}.json"))
     kept = read(ROOT / "docs" / "figures" / "papers" / f"{name}.json")

@@ -58,7 +58,7 @@ def standing(body, half):
 
 
 def omni():
-    """A lamp closely surrounded by boxes, which shade a floor and one another."""
+    """Returns the scene of a lamp closely surrounded by boxes, which shade a floor and one another."""
     around = [(round(1.1 * cos(k * pi / 4), 3), round(1.1 * sin(k * pi / 4), 3)) for k in range(8)]
     bodies = [{"name": f"box {k}", "shape": {"type": "box", "center": [x, 0.5 + 0.2 * (k % 3), z], "halfSize": [0.15, 0.3, 0.15]}} for k, (x, z) in enumerate(around)]
     world = standing(bodies[0], 0.5)
@@ -68,8 +68,8 @@ def omni():
 
 
 def bumpy_ball(rows=90, without_front=False):
-    """A closed ball with bumps as a scene's mesh, radius about 1 and 2 above the floor, and the text of its file; `without_front` leaves out the
-    triangles that face all of a light of half-size 0.5 and height 5."""
+    """Returns a scene with a closed bumpy ball of radius about 1, centred 2 above the floor, and the text of its mesh
+    file. `without_front` leaves out the triangles that face all of a light of half-size 0.5 at height 5."""
     def at(row, column):
         theta, phi = pi * row / rows, pi * column / rows
         r = 1 + 0.1 * sin(9 * theta) * sin(9 * phi) * sin(theta)
@@ -96,8 +96,8 @@ def bumpy_ball(rows=90, without_front=False):
 
 
 def questions():
-    """(paper, question, the paper's number, scene, size, options, methods): the ratio is the first method's time over the second's, in a
-    scene of its own if there are two."""
+    """Yields (paper, question, the paper's number, scene, size, options, methods). The ratio is the first method's time
+    divided by the second's; if there are two scenes, each method has its own."""
     for body, world in (("bunny", standing(bunny(), 0.5)), ("ball", standing(ball(y=1.2), 0.5))):
         yield ("Atty et al., 3.5", f"`soft-shadow-map` with two passes over one, map 128², {body}", "1.6 to 1.8", world, 256, [],
                ("soft-shadow-map:passes=2:size=128", "soft-shadow-map:passes=1:size=128"))
@@ -119,16 +119,17 @@ def questions():
         yield ("Schwärzler, section 4", f"`adaptive-light` over `accumulate`, 128 light samples, maps of 512², plate close to the floor, light of half-size {half:g}",
                "0.18 to 0.5, at worst 1.5", world_of("plate", half), 256, ["--light-samples", "128"],
                ("adaptive-light:size=512", "accumulate:size=512"))
-    # The paper's Guennebaud et al. 2007 looks at every cell of a kernel, which takes minutes a run with maps of 512².
+    # The method that the paper compares with (Guennebaud et al. 2007) visits every cell of a kernel: minutes per run
+    # with maps of 512².
     yield ("Yang et al., fig. 11", "`packet` with 2 × 2 sub-lights over flat `contour`, map 128², bunny, light of half-size 1, 96² pixels", "0.33", standing(bunny(), 1), 96, [],
            ("packet:sublights=2:size=128", "contour:size=128:traversal=flat"))
-    # Four layers are as many maps as 2 × 2 sub-lights.
+    # Four layers are the same number of maps as 2 × 2 sub-lights.
     for other, claimed in (("bitmask:size=512:layers=4", "0.19"), ("backproject-peel:size=512:layers=4", "0.21")):
         yield ("Yang et al., fig. 11", f"`packet` with 2 × 2 sub-lights over `{other}`, map 512², bunny, light of half-size 1", claimed, standing(bunny(), 1), 96, [],
                ("packet:sublights=2:size=512", other))
     yield ("Yang et al., fig. 11", "`packet` with 4 × 4 sub-lights over 2 × 2, map 512², bunny, light of half-size 1", "3.7", standing(bunny(), 1), 96, [],
            ("packet:sublights=4:size=512", "packet:sublights=2:size=512"))
-    flat = "contour:size=64:traversal=flat"  # minutes a run with maps of 512²
+    flat = "contour:size=64:traversal=flat"  # maps of 512² would take minutes per run
     yield ("Yang et al., fig. 1 (c)", "`packet` over flat `contour`, map 64², a spherical lamp closely surrounded by boxes, 48² pixels", "0.05", omni(), 48, [],
            ("packet:size=64", flat))
     yield ("Yang et al., fig. 1 (b)", "`packet` over flat `contour`, map 64², `scenes/textured-light.json`, a window of nine panes, 48² pixels", "0.1", "scenes/textured-light.json", 48,
@@ -151,7 +152,7 @@ def questions():
 
 
 def scenes_of(world):
-    """Both methods' scenes."""
+    """Returns the scenes of the first and the second method."""
     return world if isinstance(world, tuple) else (world, world)
 
 
@@ -168,7 +169,8 @@ def compare(program, scene_file, folder, method, size, runs, more):
 
 
 def of_a_run(runs, *asked):
-    """Processor seconds of one run, by the difference of 1 + `runs` runs and one."""
+    """Returns the processor seconds of one run: the difference between 1 + `runs` runs and one run, divided by
+    `runs`."""
     def whole(count):
         program, scene_file, folder, method, size, more = asked
         return compare(program, scene_file, folder, method, size, count, more)[0]
@@ -176,7 +178,8 @@ def of_a_run(runs, *asked):
 
 
 def how_many_runs(program, scene_file, folder, method, size, more):
-    """Runs of about two seconds, beside which a whole process differs little from the next; one if a run takes long."""
+    """Returns the number of runs that take about two seconds, so that differences between processes hardly matter; 1
+    for slow methods."""
     def whole(count):
         return compare(program, scene_file, folder, method, size, count, more)[0]
     one = whole(1)
@@ -184,20 +187,21 @@ def how_many_runs(program, scene_file, folder, method, size, more):
 
 
 def of_no_run(program, scene_file, folder, _, size, more):
-    """Processor seconds that each run of any method adds: `compare` runs a judge of areas once, however many runs it is told."""
+    """Returns the processor seconds that `compare` spends per run on anything but the method: measured with a reference
+    of areas, which runs only once whatever --runs is."""
     return max(0, of_a_run(20, program, scene_file, folder, "exact", size, more))
 
 
 def on_gpu(program, scene_file, folder, method, size, more):
-    """Seconds of the method, all and of its passes, as the program reports them."""
+    """Returns the method's seconds, in total and of its passes, as reported by the program."""
     ran = compare(program, scene_file, folder, method, size, 5, more)[1]
     return ran["seconds"]["shadow"], sum(one["milliseconds"] for one in ran["passes"]) / 1000
 
 
 def of_turns(seconds):
-    """The median ratio, the least to the largest, and both medians, of pairs of seconds."""
+    """Returns, for pairs of seconds, the median ratio, the range of ratios, and both medians, as texts."""
     if any(second == 0 for _, second in seconds):
-        return "–", "–", "no time"  # passes of methods that have none
+        return "–", "–", "no time"  # times of passes, of a method without passes
     ratios = sorted(first / second for first, second in seconds)
     first, second = (median(turn[k] for turn in seconds) for k in range(2))
     return f"{median(ratios):.2f}", f"{ratios[0]:.2f} to {ratios[-1]:.2f}", f"{first:.2g} over {second:.2g}"
@@ -225,7 +229,7 @@ def write_scenes(program, to):
 
 
 def scene_in(folder, world):
-    """Writes a scene, and the files that it names, into a folder."""
+    """Writes a scene, and the files that it names, to a folder."""
     if not isinstance(world, dict):
         return ROOT / world
     folder.mkdir(exist_ok=True)

@@ -31,7 +31,8 @@ def run(command, log, **named):
 
 
 def measure(build, scene, work, asked):
-    """All drags of one scene, as bench/cycles/viewport.py wrote them, and the machine's load before and after."""
+    """Returns all drags of one scene, as written by bench/cycles/viewport.py, and the machine's load before and
+    after."""
     kept = work / "measured.json"
     if kept.exists():
         return json.loads(kept.read_text())
@@ -49,7 +50,7 @@ def measure(build, scene, work, asked):
 
 
 def reached(drag, error):
-    """Wall and processor seconds after which the picture stays below this error; None if it did not come."""
+    """Returns the wall and processor seconds after which pictures stay below this error; None if they never do."""
     found = None
     for when, used, at in drag["after"]:
         if at >= error:
@@ -60,7 +61,7 @@ def reached(drag, error):
 
 
 def both(pairs):
-    """Medians of wall and processor seconds, as text."""
+    """Returns the medians of wall and processor seconds, as text."""
     return " / ".join(f"{statistics.median(values):.2f}" for values in zip(*pairs))
 
 
@@ -69,7 +70,7 @@ def cell(drags, error, rest):
     if None not in found:
         return both(found)
     last = max(drag["after"][-1][0] for drag in drags)
-    return "never" if last < 0.8 * rest else f"not in {rest:g} s"  # nothing new came for the rest of the time
+    return "never" if last < 0.8 * rest else f"not in {rest:g} s"  # never: no new picture came for the rest of the time
 
 
 def rows_of(scene, measured, rest):

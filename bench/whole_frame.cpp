@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times whole pictures by methods and by a plain program on Embree.
+// Times whole pictures made by methods, and by a plain program on Embree.
 
 #include "bench/whole_frame.hpp"
 

@@ -45,9 +45,9 @@ struct FrameEntry {
 };
 
 /// Times whole pictures, each from a scene in memory, as made by `penumbra render`, in comparison with a plain program
-/// on Embree: hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where these
-/// disagree; each followed by a frame in which the light has moved. The contestants alternate; the first run of each is
-/// discarded.
+/// on Embree: hierarchy of medium quality, primary rays, 64 shadow rays at every view sample, then all N where the
+/// results of these differ. Each picture is followed by one in which the light has moved. The contestants alternate;
+/// the first run of each is discarded.
 void measure_whole_frames(const Options& options, const render::Machine& machine,
                           const std::function<void(const FrameEntry&)>& sink);
 

@@ -24,7 +24,7 @@ Json timing_json(const std::vector<double>& seconds) {
       {"median", timing.median}, {"lowest", timing.lowest}, {"highest", timing.highest}, {"spread", timing.spread()}};
 }
 
-/// Returns the plain program's median over the contestant's: the factor by which the contestant is faster.
+/// Returns the plain program's median divided by the contestant's: the factor by which the contestant is faster.
 double times_faster(const std::vector<double>& plain, const std::vector<double>& seconds) {
   return timing_of(plain).median / timing_of(seconds).median;
 }

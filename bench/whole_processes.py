@@ -39,7 +39,7 @@ def processor_seconds(command, environment=None):
 
 
 def in_turns(commands, runs, environment=None):
-    """Least processor seconds of each of these commands."""
+    """Runs these commands in turns and returns the least processor seconds of each."""
     least = [float("inf")] * len(commands)
     for _ in range(runs):
         for i, command in enumerate(commands):
@@ -135,7 +135,7 @@ def motion(program, folder):
 
 
 def four_lamps(folder):
-    """scenes/contact.json with three more rectangles, each at another height and of another size."""
+    """Returns scenes/contact.json with three more rectangle lights of different heights and sizes."""
     scene = json.loads((ROOT / "scenes/contact.json").read_text(encoding="utf-8"))
     for name, center, half in (("rim", [2.5, 3, -1.5], 0.3), ("fill", [-3, 2.5, 2], 0.8), ("top", [0, 5, 0], 0.15)):
         scene["lights"].append({"name": name, "radiance": [20, 20, 20],

@@ -41,10 +41,10 @@ glm::dvec3 form_factor_of(const LitPoint& at, const VisibleLight& light, const L
   return double{seen.visibility[pixel]} * light.whole(at);
 }
 
-/// Returns the factor of the whole form factor at a pixel with V and possibly the form factor of its facet: with the
-/// latter, the visible fraction of the light received by the facet, in which each part of the light counts by its
-/// distance and cosines, not by its area alone; V where some of the light is below the facet's plane, which V counts as
-/// hidden.
+/// Returns the factor by which the whole light's form factor is multiplied at a pixel. If the method gave the form
+/// factor of the facet, this is the visible fraction of the light received by the facet, in which each part of the
+/// light counts by its distance and cosines, not by its area alone. It is V without a form factor, and where some of
+/// the light is below the facet's plane, which V counts as hidden.
 double share_of(const visibility::Light& light, const BeautyScene& in, std::size_t i, const LightVisibility& seen,
                 std::size_t asked) {
   const double v = seen.visibility[asked];

@@ -57,19 +57,19 @@ struct BeautyScene {
 ///
 /// With shading normals (BeautyScene::normals), cosines use these, while visibility is unchanged: V and masks depend
 /// only on the triangle and the space above its plane, so the terminator is where either normal turns away. Form
-/// factors are of the triangle's own normal: where a pixel has another normal, its beauty is F of the whole light times
-/// the visible fraction of the form factor (of a textured light, or one that is partly below the triangle's plane:
+/// factors use the triangle's own normal: where a pixel has another normal, its beauty is F of the whole light times
+/// the visible fraction of the form factor (for a textured light, or one that is partly below the triangle's plane,
 /// times V).
 ///
 /// Pixels of a light's body show its radiance (with a texture, times the texel there or nearest; none if this light is
-/// not among `lights`: it is off) plus the light of the other lights reflected by its colour; the background is 0, and
-/// surfaces that receive no shadow are lit without occluders. A sphere light is the disk visible from p, which fills
-/// its solid angle.
+/// not among `lights`, since it is off) plus the light of the other lights reflected by its colour; the background is
+/// 0, and surfaces that receive no shadow are lit without occluders. A sphere light is the disk visible from p, which
+/// fills its solid angle.
 ///
 /// Each pixel is summed in double and in one order, so the result does not depend on the number of threads.
 std::vector<glm::vec3> integrate_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility);
 
-/// Adds the beauty of the pixels from BeautyScene::first_pixel on, as many as entries in `visibility`, to `beauty`.
+/// Adds to `beauty` the beauty of as many pixels as `visibility` has entries, from BeautyScene::first_pixel on.
 /// `wanted` (empty, or one value for each of these pixels): pixels with NaN are left unchanged.
 void add_beauty(const BeautyScene& scene, std::span<const LightVisibility> visibility, std::span<const float> wanted,
                 std::span<glm::vec3> beauty);

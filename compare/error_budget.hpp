@@ -22,7 +22,7 @@ struct BudgetRun {
   visibility::RepairRun run = {};
   std::optional<double> rmse = {};  ///< over the pixels of `error` in metrics.json; empty: the run failed
   std::string failure = {};
-  std::optional<double> acts_on = {};  ///< fraction of these pixels that the run acts on
+  std::optional<double> acts_on = {};  ///< fraction of the pixels of `rmse` that the run acts on (kActs)
 };
 
 /// Repair of one cause alone.
@@ -48,10 +48,10 @@ struct ErrorBudget {
   [[nodiscard]] double if_causes_added_up() const;
 };
 
-/// Limit of a sequence whose error source is halved each time. With d₁ = y₀ − y₁, d₂ = y₁ − y₂ and r = d₂ / d₁: at
-/// first order r is 1/2, and less at higher orders. Up to |r| = 0.6, with a margin for sequences that are no power, the
-/// limit of the geometric sequence through the three, y₂ − d₂ r / (1 − r) (Aitken's Δ²), at least 0; else y₂, and
-/// `reached` is false.
+/// Limit of a sequence y₀, y₁, y₂ whose error source is halved each time. Let d₁ = y₀ − y₁, d₂ = y₁ − y₂ and
+/// r = d₂ / d₁; r is 1/2 at first order, and less at higher orders. If |r| ≤ 0.6 (a margin for sequences that are not a
+/// power), the limit is that of the geometric sequence through the three values, y₂ − d₂ r / (1 − r) (Aitken's Δ²), or
+/// 0 if that is negative. Otherwise the limit is y₂, and `reached` is false.
 struct Limit {
   double value = 0;
   bool reached = false;

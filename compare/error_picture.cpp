@@ -88,7 +88,8 @@ Image8 visibility_picture(const visibility::ViewSamples& samples, std::span<cons
 }
 
 float auto_exposure(std::span<const glm::vec3> linear, std::span<const std::uint8_t> left_out) {
-  // Floats above 0 have the order of their bits: finds first the upper half of the percentile's bits, then the lower.
+  // Positive floats are ordered like their bits: finds the upper half of the percentile's bits first, then the lower
+  // half.
   constexpr std::uint32_t kHalf = 16;
   const auto counts_of_halves = [&](std::uint32_t shift, std::uint32_t above) {
     std::vector<std::size_t> counts(std::size_t{1} << kHalf);

@@ -41,7 +41,7 @@ struct Decades {
 
 constexpr double kLeft = 64, kRight = 660, kTop = 16, kBottom = 372, kZeroGap = 34, kWidth = 860;
 
-/// Returns the mark's shape, by colour and form of the family.
+/// Returns the mark in the colour and shape of its family.
 std::string mark(const Dot& dot) {
   if (dot.family == "geometry")
     return fmt::format(R"(<circle class="geometry" cx="{:.1f}" cy="{:.1f}" r="5.5"/>)", dot.x, dot.y);
@@ -55,8 +55,8 @@ struct Box {
   double x, end, y;
 };
 
-/// Returns the names, each to the right of its dot, or to the left where there is no room, and moved up or down where
-/// another text is already; `taken`: other texts.
+/// Returns the names, each to the right of its dot, or to the left if there is no room, and moved up or down if another
+/// text is already there. `taken`: other texts.
 std::string names(std::vector<Dot> dots, std::vector<Box> taken) {
   constexpr double kLine = 15;
   std::ranges::sort(dots, [](const Dot& a, const Dot& b) { return std::pair(a.y, a.x) < std::pair(b.y, b.x); });
@@ -88,7 +88,7 @@ std::string names(std::vector<Dot> dots, std::vector<Box> taken) {
 }
 
 std::string power_of_ten(int exponent) {
-  if (exponent < -4) return fmt::format("1e{}", exponent);  // longer ones would not fit beside the axis
+  if (exponent < -4) return fmt::format("1e{}", exponent);  // decimal fractions would be too long for the axis
   return fmt::format("{:.{}f}", std::pow(10, exponent), std::max(0, -exponent));
 }
 

@@ -8,8 +8,8 @@
 
 namespace penumbra::compare {
 
-/// Plot of RMSE of V against seconds for the shadow, both axes logarithmic; marks without any error are on a line of
-/// their own.
+/// Plot of RMSE of V against seconds for the shadow, both axes logarithmic; marks without any error are on a
+/// separate line.
 struct ErrorPlot {
   struct Mark {
     std::string name;    ///< written next to the mark; empty: no text
@@ -17,7 +17,7 @@ struct ErrorPlot {
     std::string family;  ///< geometry, image or reference: determines shape and colour
     double seconds = 0, rmse = 0;
   };
-  /// Error that no method of some kind can be below, with its label.
+  /// Smallest error that methods of some kind can have, with its label.
   struct Level {
     double rmse = 0;
     std::string text;
@@ -28,7 +28,7 @@ struct ErrorPlot {
   std::string across = "seconds for the shadow";  ///< label of the axis
 };
 
-/// Errors of V, a float, of less than half of its last digit are drawn as 0.
+/// Errors of V below half of the last digit of a float are drawn as 0.
 inline constexpr double kNoError = 0x1p-25;
 
 /// Returns an element `svg` of class `plot`, whose parts have the classes of page/viewer.css. `attributes`: further

@@ -11,7 +11,8 @@
 /// Perceived errors of a picture, as a complement of RMSE.
 namespace penumbra::compare {
 
-/// A byte of a picture has 255 steps: V that is off by less is shown at the right step or at a neighbouring one.
+/// One of the 255 steps of a picture's byte: V with a smaller error is shown at the right step or at a neighbouring
+/// one.
 inline constexpr double kShown = 1.0 / 255;
 
 struct EyeError {

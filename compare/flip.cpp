@@ -2,7 +2,7 @@
 // Computes FLIP (Andersson et al. 2020, cited in eye.hpp); section and equation numbers are the paper's. Both pictures
 // are filtered by contrast sensitivity functions, and colours are compared by HyAB in Hunt-adjusted L*a*b* (the colour
 // pipeline); edges and points of their unfiltered luminance are detected by derivatives of a Gaussian (the feature
-// pipeline); the second amplifies the first. Beyond a border the nearest pixel is repeated.
+// pipeline); feature differences amplify colour differences. Beyond a border the nearest pixel is repeated.
 
 #include "base/assert.hpp"
 #include "compare/eye.hpp"
@@ -159,7 +159,7 @@ Plane as_seen(const Plane& in, const Sensitivity& eye, double pixels_per_degree)
 }
 
 /// Strength of an edge and of a point at each pixel: lengths of gradients by a Gaussian's first and second derivative
-/// (section 4.2), whose positive weights add up to 1 and the negative ones to −1.
+/// (section 4.2). The positive weights of each derivative add up to 1, the negative ones to −1.
 struct Features {
   std::vector<double> edges, points;
 };

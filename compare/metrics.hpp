@@ -38,8 +38,8 @@ struct VisibilityError {
 std::optional<VisibilityError> visibility_error(std::span<const float> visibility, std::span<const float> reference,
                                                 std::span<const std::uint32_t> pixels);
 
-/// Judged pixels by visibility: all of the light is seen, some, or none; and where some is hidden, by the hiding
-/// object. A pixel is in one of the first three, and a shadowed pixel in one or both of the others (or in none, where
+/// Judged pixels by visibility (all, some or none of the light is seen), and, if some is hidden, by the hiding object.
+/// A pixel is in one of the first three classes, and a shadowed pixel also in one or both of the others (or in none, if
 /// no ray hit the hiding object).
 struct PixelClasses {
   std::vector<std::uint32_t> lit, penumbra, umbra;
@@ -79,8 +79,8 @@ struct JudgedVisibility {
 /// judged.
 std::optional<VisibilityError> visibility_error(std::span<const JudgedVisibility> lights);
 
-/// Errors of the beauty over a set of pixels: with e the difference of luminances (Rec. 709), both over the mean
-/// luminance of the reference.
+/// Errors of the beauty over a set of pixels. e is the difference of luminances (Rec. 709), and both errors are divided
+/// by the mean luminance of the reference.
 struct BeautyError {
   double relative_rmse = 0;  ///< √ of the mean of e²
   double relative_bias = 0;  ///< mean of e; positive: too bright
@@ -92,7 +92,7 @@ struct BeautyError {
 std::optional<BeautyError> beauty_error(std::span<const glm::vec3> beauty, std::span<const glm::vec3> reference,
                                         std::span<const std::uint32_t> pixels);
 
-/// Error of a beauty computed from V alone by V · ∫G in place of ∫G V, beside the error due to V.
+/// Error of a beauty that is computed from V alone, as V · ∫G instead of ∫G V, and separately the error due to V.
 struct Separation {
   BeautyError alone;  ///< of V of the reference · ∫G
   BeautyError of_v;   ///< of (V − V of the reference) · ∫G: without the separation
@@ -114,7 +114,7 @@ struct MaskPair {
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count + 31) / 32; }
 };
 
-/// (View sample, light point) pairs.
+/// Numbers of pairs of view sample and light sample.
 struct PairCounts {
   std::uint64_t all = 0;        ///< `pairsAll`: of all given pixels
   std::uint64_t penumbra = 0;   ///< `pairs`: of the pixels where 0 < V < 1 in either
@@ -130,7 +130,8 @@ PairCounts count_pairs(const MaskPair& masks, std::span<const std::uint32_t> pix
 void for_each_differing_pair(const MaskPair& masks, std::span<const std::uint32_t> pixels,
                              const std::function<void(std::uint32_t, std::uint32_t, bool)>& visit);
 
-/// Correct side on differing pairs: on all of them, or on a sample. For each pair exactly one of the two is right.
+/// Which side is right on differing pairs: on all of them, or on a sample. For each pair either the method or its
+/// reference is right.
 struct PairVerdicts {
   std::uint64_t decided = 0;  ///< `pairsDecided`; the other counts are of these
   std::uint64_t method_right = 0;

@@ -61,9 +61,9 @@ bool has_packed_numbers(const ReportEntry& entry) {
   });
 }
 
-/// Role of an entry. `samples`: the light's sample set of its masks; `judges_pairs`: the entry is the rays to which
-/// others on this set are compared. Masks to which no other entry is compared are left out: masks of 1,024 light
-/// samples are a tenth of a page.
+/// Role of an entry. `samples`: the set of light samples of its masks. `judges_pairs`: the entry has the rays with
+/// which other entries on this set are compared. Masks with which no other entry is compared are left out: masks of
+/// 1,024 light samples are a tenth of a page.
 struct EntryRole {
   const char* role;
   const char* samples;
@@ -86,8 +86,8 @@ Json entry_json(const ReportEntry& entry, const EntryRole& role, Blobs& blobs) {
           {"lights", lights}};
 }
 
-/// Returns what can be looked at, pixel by pixel: the reference, the rays and the methods that have numbers; empty
-/// without the reference's numbers.
+/// Returns the entries whose values the page shows pixel by pixel: the reference, the rays and the methods that have
+/// packed numbers. Empty if the reference has none.
 Json entries_json(const ReportInput& in, Blobs& blobs) {
   Json entries = Json::array();
   if (!has_packed_numbers(in.reference)) return entries;
@@ -118,7 +118,7 @@ Json lights_json(const ReportInput& in, Blobs& blobs) {
   return lights;
 }
 
-/// Returns a method's description, what it was asked, and pictures of its repairs, light by light.
+/// Returns a method's description, the quantity that it computed, and pictures of its repairs, light by light.
 Json method_json(const ReportInput& in, const ReportEntry& entry, const Stats& stats) {
   const visibility::MethodDescription& method = entry.description;
   Json options = Json::array(), repairs = Json::array();

@@ -65,7 +65,7 @@ struct ReportInput {
   Metrics metrics;                               ///< the same numbers as metrics.json
   std::vector<ReportLight> lights;               ///< the chosen one first; at least one
   ReportEntry reference;
-  std::optional<ReportEntry> rays;   ///< on the methods' light samples, if the reference used others
+  std::optional<ReportEntry> rays;   ///< rays on the methods' light samples, if the reference used others
   std::vector<ReportEntry> methods;  ///< in the order of metrics.methods
   double error_limit = 1;            ///< of the error pictures' scale
   float exposure = 1;                ///< of the beauty pictures

@@ -35,7 +35,7 @@ Json options_json(const visibility::MethodOptions& options) {
   return json;
 }
 
-/// Returns a pattern's name; null: there are no light samples.
+/// Returns a pattern's name; null if there are no light samples.
 Json pattern_json(const std::string& pattern) {
   return pattern.empty() ? Json() : Json(pattern);
 }

@@ -48,9 +48,9 @@ struct LightStats {
 
 /// Lights left out of view samples where they are faint.
 struct LightCutoff {
-  double below = 0;          ///< share of a view sample's unshadowed light that was asked for
-  std::uint64_t pairs = 0;   ///< of a view sample and a light that is left out
-  double largest_share = 0;  ///< of a view sample's unshadowed light: what is left out, all lights together
+  double below = 0;          ///< requested largest share of a view sample's unshadowed light
+  std::uint64_t pairs = 0;   ///< pairs of a view sample and a light that is left out there
+  double largest_share = 0;  ///< largest left-out share of any view sample's light, all lights together
 };
 
 /// stats.json: request and cost of one run of one method.
@@ -118,11 +118,11 @@ struct MethodResult {
   std::optional<VisibilityError> error;          ///< over judged pixels
   std::optional<VisibilityError> horizon_error;  ///< over horizon pixels
   std::optional<BeautyError> beauty_error;       ///< over judged pixels, with all lights
-  std::optional<Separation> separation = {};     ///< as beauty_error, of scalar methods
+  std::optional<Separation> separation = {};     ///< over judged pixels, for methods that know only V
   std::optional<Flip> flip = {};                 ///< of the beauty's picture
   std::optional<double> flicker = {};    ///< of a sequence: RMSE of ΔV − ΔV of the reference from frame to frame
-  std::optional<Pops> pops = {};         ///< likewise
-  std::optional<PairCounts> pairs;       ///< two sample-based methods on the same samples
+  std::optional<Pops> pops = {};         ///< of a sequence
+  std::optional<PairCounts> pairs;       ///< if method and reference have the same light samples
   std::optional<PairVerdicts> verdicts;  ///< of all differing pairs, or of an evenly spaced sample of them
   std::optional<MethodFailure> failure;  ///< if set, there are no seconds, errors and pairs
 };
@@ -130,14 +130,14 @@ struct MethodResult {
 /// Rays on the methods' own light samples, run in addition to a reference with other samples.
 struct SampleCost {
   Stats stats;
-  std::vector<LightResult> lights;                  ///< errors against the reference due to the number of light samples
+  std::vector<LightResult> lights;                  ///< errors that come from the number of light samples
   std::optional<VisibilityError> all_lights_error;  ///< over all lights' judged pixels together
 };
 
 /// Method of a group that was not compared, since it would have taken longer than its limit.
 struct LeftOut {
   std::string entry;
-  double seconds = 0, limit = 0;  ///< of a run, as estimated; and the limit
+  double seconds = 0, limit = 0;  ///< estimated time of a run; limit
 };
 
 /// Contents of metrics.json.

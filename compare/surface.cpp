@@ -74,8 +74,8 @@ glm::vec3 shading_normal(const scenes::VertexLooks& looks, const visibility::Tri
   if (!(length > 0)) return geometric;
   const glm::dvec3 unit = normal / length;
   // Exporters also write the normals of facets, rotated in single precision, and the facet's own normal is computed
-  // from rounded corners: a tenth of a milliradian is far above the error of either in any visible triangle, and
-  // changes a cosine by less than a ten-thousandth. Within this tolerance, the facet's own normal is exact.
+  // from rounded corners: a tenth of a milliradian is far above the error of either normal in any visible triangle,
+  // and changes a cosine by less than a ten-thousandth. Within this tolerance, the facet's own normal is exact.
   constexpr double kSame = 1e-4;
   if (glm::length(glm::cross(unit, glm::dvec3(geometric))) <= kSame) return geometric;
   return glm::vec3(glm::dot(unit, glm::dvec3(geometric)) < 0 ? -unit : unit);

@@ -19,10 +19,10 @@ struct SurfaceLooks {
       normals;  ///< unit, on the viewer's side of the geometric normal; empty: not requested, or there are none
 };
 
-/// Returns the surface at each view sample. `floats` must be made from `scene`. Barycentric coordinates of p in the
-/// carrier's plane, in double; pictures at level 0, the nearest texel or bilinear between texel centres in linear
-/// light; vertices' colours and normals linear over the triangle. A vertex without a normal leaves its triangles flat;
-/// so do normals that equal the triangle's own up to rounding.
+/// Returns the surface at each view sample. `floats` must be made from `scene`. Uses barycentric coordinates of p
+/// in the carrier's plane, in double; pictures at level 0, with the nearest texel or bilinear between texel centres, in
+/// linear light; vertices' colours and normals interpolated linearly. Triangles stay flat if a vertex has no normal, or
+/// if the normals equal the triangle's own up to rounding.
 SurfaceLooks look_at(const scenes::Scene& scene, const visibility::SceneFloats& floats,
                      const visibility::ViewSamples& samples, bool shading_normals);
 

@@ -137,7 +137,7 @@ glm::dvec3 VisibleLight::of_dome(const LitPoint& at, Mask mask, std::span<const 
     const double left = transmittances.empty() ? cosine : cosine * double{transmittances[j]};
     some += light_->dome->sky == nullptr ? glm::dvec3(left) : left * glm::dvec3(light_->sample_colors[j]);
   }
-  // For a picture, only its light samples are known; for uniform radiance, the whole is.
+  // For a picture, only the light of its samples is known; for uniform radiance, the whole form factor is known.
   if (light_->dome->sky) return light_->dome->power / static_cast<double>(light_->sample_count()) * some;
   return all > 0 ? at.seen.whole() * (some / all) : glm::dvec3(0);
 }

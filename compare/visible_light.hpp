@@ -24,11 +24,12 @@ struct LitPoint {
 /// All of the light: its form factor in closed form, so that methods agree wherever there is no occluder.
 ///
 /// Cells. A rectangle with light samples in rows (patterns rows and grid) is divided into cells: row r of L is the band
-/// of t between 2r/L − 1 and 2(r + 1)/L − 1, and in it each sample has the points nearer to this sample than to the
-/// row's other samples. Borders are half way between samples; the first cell begins and the last ends at the light's
-/// border, so the light is covered once: where a row is shifted by σ cells the first is 1 + σ cells wide, the last 1 −
-/// σ. A run of visible samples is one rectangle. At view samples whose horizon cuts the light, the sum over the visible
-/// cells is scaled so that all cells whose samples are above the horizon give the form factor of the whole light.
+/// of t between 2r/L − 1 and 2(r + 1)/L − 1, and in it each sample's cell has the points nearer to this sample than to
+/// the row's other samples. Borders are half way between samples; the first cell begins and the last ends at the
+/// light's border, so the light is covered once: if a row is shifted by the width of σ cells, the first is 1 + σ wide,
+/// the last 1 − σ. A run of visible samples is one rectangle. At view samples whose horizon cuts the light, the sum
+/// over the visible cells is scaled so that all cells whose samples are above the horizon give the form factor of the
+/// whole light.
 ///
 /// Samples. Every other light (disk, polygon, sphere, texture, patterns sobol and jittered) is summed sample by sample,
 /// and the sum scaled so that all samples together give the form factor of the whole light:
@@ -46,9 +47,9 @@ class VisibleLight {
   explicit VisibleLight(const visibility::Light& light);
 
   [[nodiscard]] const visibility::Light& light() const { return *light_; }
-  /// Returns the form factor of the whole light; of a texture or picture that of all light samples.
+  /// Returns the form factor of the whole light; for a texture or picture, that of all light samples.
   [[nodiscard]] glm::dvec3 unshadowed(const LitPoint& at) const;
-  /// Returns the same without light samples where it is known: for a dome with a picture.
+  /// Returns the same, but for a dome with a picture the form factor that is known without light samples.
   [[nodiscard]] glm::dvec3 whole(const LitPoint& at) const;
   /// Returns the form factor of the visible part. `mask`: words_per_mask() words; bits beyond the last sample are
   /// ignored. `transmittances`: factor of each light sample (applied as `texel` above; cells with a common factor keep

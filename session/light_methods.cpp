@@ -29,7 +29,7 @@ bool has_option(const MethodDescription& method, const std::string& key) {
   return std::ranges::find(method.options, key, &visibility::OptionDescription::name) != method.options.end();
 }
 
-/// Returns the options that the method has; all options, if the method was named.
+/// Returns the requested options that the method has; all of them if the method was named.
 MethodOptions options_for(const MethodDescription& method, const MethodWish& wish) {
   if (!wish.method.empty()) return wish.options;
   MethodOptions options;
@@ -56,7 +56,7 @@ std::optional<LightMethod> area_method(const MethodDescription& method, const Li
   }
 }
 
-/// Returns a note about the reason why the light has another method than similar lights.
+/// Returns a note about why the light has a different method from similar lights.
 std::string note_of_span(const Light& light, const std::string& method, const std::string& chosen) {
   return fmt::format("light \"{}\": too far away, too large or too small beside the scene for {}; {} takes its place",
                      light.name, method, chosen);
@@ -117,8 +117,8 @@ void unite(const std::vector<Light>& lights, const SceneFloats& scene, const Who
   std::fill(chosen.begin() + first, chosen.begin() + end, one);
 }
 
-/// Returns whether the method of a dome will certainly answer for each of its light samples. `samples`: they were
-/// requested.
+/// Returns whether the method of a dome will certainly compute the visibility of each light sample, and no areas.
+/// `samples`: light samples were requested.
 bool counts_samples_of_dome(const MethodWish& wish, bool samples) {
   if (wish.method.empty()) return samples && wish.options.empty();  // an option may ask for areas
   const MethodDescription method = describe_method(wish.method, wish.options);

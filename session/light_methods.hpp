@@ -42,14 +42,14 @@ struct LightScene {
 std::vector<LightMethod> choose_light_methods(const std::vector<visibility::Light>& lights, const LightScene& scene,
                                               const MethodWish& wish);
 
-/// Returns whether the light itself asks for its light samples (scenes::Dome::sampled).
+/// Returns whether the light's own description requests light samples (scenes::Dome::sampled).
 bool is_sampled(const scenes::AreaLight& source);
 
-/// Returns whether the methods of all domes among the lights will certainly answer for each of their light samples, and
-/// give no areas.
+/// Returns whether the methods of all domes among the lights will certainly compute the visibility of each light
+/// sample, and no areas.
 bool counts_dome_samples(const MethodWish& wish, const std::vector<scenes::AreaLight>& lights);
 
-/// Returns the lights (indices) with one method and the same options, in the order of the first of each.
+/// Groups the lights (indices) by method and options; groups are in the order of their first lights.
 std::vector<std::vector<std::size_t>> same_methods(const std::vector<LightMethod>& chosen);
 
 }  // namespace penumbra::session

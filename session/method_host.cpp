@@ -46,7 +46,7 @@ std::vector<std::size_t> chosen_lights(const RunPlan& plan) {
 }
 
 OneRun MethodHost::run(bool reads, bool limited, MethodRun& result) {
-  constexpr std::uint32_t kFirstShare = 64;  // of a light's rows
+  constexpr std::uint32_t kFirstShare = 64;  // a limited run's first tile is this part of the rows
   OneRun times{std::vector<LightTimes>(plan_.lights.size())};
   result.counters.clear();
   const Stopwatch whole;

@@ -19,14 +19,14 @@ namespace penumbra::session {
 struct OneRun {
   std::vector<LightTimes> lights;
   double mesh = 0, view = 0, read = 0;
-  double bands = 0;  ///< part of `lights` that is spent because of more tiles than other runs have; an estimate
+  double bands = 0;  ///< estimated part of `lights` for tiles beyond the number that other runs have
 };
 
 /// Returns the lights of a plan, as indices.
 std::vector<std::size_t> chosen_lights(const RunPlan& plan);
 
-/// One method on one session: each run goes through all lights of a plan, tile by tile. What is read passes through the
-/// host's rules (run_method) to the result and to the sink. All arguments must outlive this object.
+/// One method on one session: each run goes through all lights of a plan, tile by tile. The host applies its rules
+/// (run_method) to what it reads, and passes it to the result and to the sink. All arguments must outlive this object.
 class MethodHost {
  public:
   MethodHost(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
@@ -36,9 +36,9 @@ class MethodHost {
   /// Returns the scene that the method has.
   [[nodiscard]] const visibility::SceneFloats* prepared() const { return mesh_; }
 
-  /// `reads`: pass on the results. `limited`: ends with TakesTooLong if it would take longer than
-  /// RunPlan::most_seconds. Its tiles are a few rows first and double, so that both parts of a tile's time become
-  /// known.
+  /// Runs the method once. `reads`: pass on the results. `limited`: throw TakesTooLong if the run would take longer
+  /// than RunPlan::most_seconds. The tiles of a limited run begin with a few rows and double in size, so that both
+  /// parts of a tile's time, per tile and per row, become known.
   OneRun run(bool reads, bool limited, MethodRun& result);
 
  private:
@@ -50,7 +50,7 @@ class MethodHost {
   [[nodiscard]] const visibility::ViewSamples& samples_for(std::size_t light);
   [[nodiscard]] std::span<const std::uint8_t> dark_of(std::size_t light) const;
   /// Returns the lights in an order in which lights with the same casters are consecutive, so that each mesh is
-  /// prepared once a run. The same order in every run: beauty is a sum over lights.
+  /// prepared once per run. The same order in every run: beauty is a sum over lights.
   [[nodiscard]] std::vector<std::size_t> in_order_of_meshes() const;
   /// Returns the rows whose masks are read back at once: at most a quarter of a GiB of host memory.
   [[nodiscard]] std::uint32_t most_rows_to_read(std::size_t light_index) const;
@@ -66,7 +66,7 @@ class MethodHost {
   /// Sets values that are outside 0 … 1 by rounding alone to 0 or 1, and throws for others; V of every method passes
   /// through this function.
   void settle_shares(const visibility::Light& light, std::size_t first, std::span<float> values) const;
-  /// Sets form factors to 0 where V is 0, and where negative by rounding; throws for other negative numbers.
+  /// Sets form factors to 0 where V is 0, and where rounding made them negative; throws for other negative numbers.
   void settle_form_factors(const visibility::Light& light, std::size_t first, std::span<const float> values);
   [[nodiscard]] bool wanted(std::size_t pixel) const;
   [[noreturn]] void refuse(const visibility::Light& light, std::size_t pixel, const std::string& what) const;

@@ -50,7 +50,7 @@ std::vector<Variant> variants_of(const MethodDescription& method) {
 
 namespace {
 
-/// null: exact areas are not supported.
+/// Returns null if exact areas are not supported.
 nlohmann::ordered_json exact_area_json(const MethodDescription& method) {
   if (!method.exact_area) return nullptr;
   const MethodDescription with = describe_method(method.name, method.exact_area->options);

@@ -19,8 +19,8 @@ struct Variant {
   visibility::MethodDescription method;
 };
 
-/// Returns the variants: each option by itself, at all of its choices; for a number the first value with an effect,
-/// among the two least and the greatest.
+/// Returns the variants: each option by itself, with each of its choices; for a number, with the first of the two least
+/// values and the greatest that has an effect.
 std::vector<Variant> variants_of(const visibility::MethodDescription& method);
 
 /// Returns the JSON printed by `methods --json`.

@@ -199,9 +199,9 @@ bool can_do(const MethodDescription& method, const std::vector<Light>& lights) {
 
 namespace {
 
-/// Returns whether rays are faster than geometry. Never for a light with an image on a plane. All around p a mesh has
-/// edges on every side, whatever the number of light samples, while the cost of rays is proportional to that number:
-/// measured, the two are equal at about 40 triangles for each light sample (docs/domes.md).
+/// Returns whether rays are faster than geometry: only possible for a dome. All around p, the edges of the whole mesh
+/// count, whatever the number of light samples, while the cost of rays is proportional to that number. Measured, the
+/// two are equally fast at about 40 triangles for each light sample (docs/domes.md).
 bool rays_are_quicker(const Light& light, std::uint64_t triangles) {
   constexpr std::uint64_t kTriangles = 32;  // for each light sample
   return light.dome && triangles > kTriangles * light.sample_count();

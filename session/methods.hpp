@@ -56,21 +56,21 @@ bool needs_device(std::string_view name, const visibility::MethodOptions& option
 std::unique_ptr<visibility::Method> make_method(std::string_view name, const visibility::MethodOptions& options,
                                                 const render::Machine& machine);
 
-/// Returns whether a method, with these options, looks at each triangle once, and keeps none: of planar lights and
-/// suns, in scenes without holes and translucent surfaces (visibility::PassesTriangles).
+/// Returns whether a method, with these options, can be given all triangles once, without keeping any
+/// (visibility::PassesTriangles): for planar lights and suns, in scenes without holes and translucent surfaces.
 bool passes_triangles(std::string_view name, const visibility::MethodOptions& options);
 
-/// visibility::check_light for a method with these options, of which `description` is. Where one option alone keeps the
-/// method from this kind of light, the error names the option.
+/// Does visibility::check_light for a method with these options, described by `description`. If a single option
+/// prevents the method from supporting this kind of light, the error names the option.
 void check_light(const visibility::MethodDescription& description, const visibility::MethodOptions& options,
                  const visibility::Light& light);
 
 bool can_do(const visibility::MethodDescription& method, const std::vector<visibility::Light>& lights);
 
-/// Returns the best method for the light's samples: the first geometry-based one that supports the light; rays, for a
-/// light beyond that method's range (LightSpan), or of an unsupported kind; and `exact`, which computes areas of any
-/// light, if rays do not support it either. Throws InputError if there is no method. `scene`: null for a light of no
-/// size; else `triangles` is the number of triangles of the whole, of which it may be a part.
+/// Returns the best method for the light's samples: the first geometry-based one that supports the light; rays, if the
+/// light is beyond that method's range (LightSpan) or of an unsupported kind; `exact`, which computes areas of any
+/// light, if rays do not support it either. Throws InputError if there is no method. `scene`: null if the light's range
+/// does not matter. `triangles`: number of triangles of the whole scene, of which `scene` may be a part.
 const visibility::MethodDescription& default_method(const visibility::Light& light,
                                                     const visibility::SceneFloats* scene = nullptr,
                                                     std::uint64_t triangles = 0);

@@ -63,17 +63,17 @@ visibility::MethodOptions parse_method_options(const std::vector<std::string>& t
 /// Returns a label as a file's name: characters special in a shell, a URL or a file system become '_'.
 std::string file_name_of(std::string_view label);
 
-/// Entry of `--methods`: a name with options of its own.
+/// Entry of `--methods`: a name with its options.
 struct MethodEntry {
   std::string label;  ///< as given by the user, made unique and fit for a file name: names the entry's files
   std::string name;
   visibility::MethodOptions options;
   bool from_group = false;  ///< not named explicitly: left out, with a warning, if the scene's lights are not supported
   bool by_default = false;  ///< of the group `default`: left out, with a warning, if it is slow on the device
-  bool exact_area = false;  ///< a group's member once more, for its exact areas
+  bool exact_area = false;  ///< second entry of a group's member, for its exact areas
 };
 /// Parses "a,b:key=value:key=value,c"; `geometry`, `image` and `all` stand for the methods of these families in the
-/// table, each that computes exact areas by an option also with this option.
+/// table. A method that computes exact areas by an option appears twice, also with this option.
 std::vector<MethodEntry> parse_methods(std::string_view text);
 
 /// Method with its options.

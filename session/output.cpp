@@ -98,7 +98,7 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, s
     const std::int32_t triangle = session.samples.triangle[i];
     const bool body = triangle >= 0 && session.floats.emits[static_cast<std::size_t>(triangle)] >= 0;
     const bool through_body = !lamps.empty() && lamps[i] != 0;
-    const bool sky = triangle < 0 && lamps.empty();  // not of antialiased pictures, whose pixels are background in part
+    const bool sky = triangle < 0 && lamps.empty();  // not if antialiased: pixels may be partly sky
     bodies[i] = body || sky || through_body ? 1 : 0;
   }
   return compare::auto_exposure(beauty, bodies);
@@ -150,7 +150,7 @@ std::uint64_t bytes_of(const Lists&... lists) {
 }
 
 /// Returns the memory in use while a method runs: the scene as read, the numbers shared by all methods, the view
-/// samples, the method's own memory, and its results (V, and their part of the light).
+/// samples, the method's own memory, and its results (V, and the light's contribution to beauty).
 std::map<std::string, std::uint64_t> memory_of(const Session& session, std::size_t lights, const MethodRun& run) {
   const mesh::TriangleSoup& soup = session.scene.soup;
   const auto floats_bytes = [](const visibility::SceneFloats& floats) {

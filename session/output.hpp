@@ -47,7 +47,7 @@ class BeautyAccumulator {
 };
 
 /// Returns compare::auto_exposure of the pixels that show no body of a light; of all pixels, if there are no others.
-/// `lamps` (empty, or one value for each pixel): not 0 where a body is visible other than at the pixel's carrier.
+/// `lamps` (empty, or one value for each pixel): not 0 where the pixel shows a light's body, though not as its carrier.
 float auto_exposure(const Session& session, std::span<const glm::vec3> beauty,
                     std::span<const std::uint8_t> lamps = {});
 

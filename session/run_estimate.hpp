@@ -8,11 +8,12 @@
 
 namespace penumbra::session {
 
-/// Estimate of a run's time before its end. A tile takes a time of its own, such as drawing all maps again, and a time
-/// for each of its rows: both by least squares over the tiles that are done, which have different numbers of rows.
+/// Estimate of a run's time before its end. A tile takes a fixed time, such as that of drawing all maps again, and a
+/// time for each of its rows. Both are found by least squares over the completed tiles, which have different numbers of
+/// rows.
 class RunEstimate {
  public:
-  /// Numbers of the whole run; `rows`: of each light.
+  /// `lights`, `rows`: numbers of the whole run's lights, and of each light's rows.
   RunEstimate(std::size_t lights, std::uint32_t rows) : lights_(static_cast<double>(lights)), rows_(rows) {}
 
   void add(std::uint32_t rows, double seconds) {
@@ -22,14 +23,14 @@ class RunEstimate {
   [[nodiscard]] bool is_done() const { return sizes_ == lights_ * rows_; }
   /// Returns the seconds of a tile of that many rows.
   [[nodiscard]] double of_tile(double rows) const { return of_each_tile() + rows * of_each_row(); }
-  /// Returns the seconds of a whole run in tiles of that many rows, of which `elapsed` have passed and `mesh` were
-  /// spent on meshes: time outside of tiles is spent once for each light.
+  /// Returns the seconds of a whole run in tiles of that many rows. `elapsed`: seconds so far; `mesh`: those of them
+  /// spent on meshes. All other time outside of tiles is spent once for each light.
   [[nodiscard]] double of_all(double elapsed, double mesh, std::uint32_t rows_of_tile) const {
     const double begun = std::ceil(sizes_ / rows_);
     return mesh + (elapsed - mesh - seconds_) * lights_ / begun +
            lights_ * (tiles_of_light(rows_of_tile) * of_each_tile() + rows_ * of_each_row());
   }
-  /// Returns the seconds spent because there were more tiles than with that many rows in each.
+  /// Returns the seconds spent on tiles beyond the number that tiles of that many rows would have needed.
   [[nodiscard]] double of_bands(std::uint32_t rows_of_tile) const {
     return std::max(count_ - lights_ * tiles_of_light(rows_of_tile), 0.0) * of_each_tile();
   }

@@ -41,7 +41,7 @@ struct RunPlan {
   std::span<const visibility::Light> lights;
   bool filtered_alone = false;  ///< for a light with filtered_by, evaluate only those view samples; NaN elsewhere
   std::uint32_t runs = 1;       ///< largest number of timed runs
-  /// Time of timed runs: another begins if one as long as the last would end within it.
+  /// Time limit for all timed runs: another run begins only if it would end in time when as long as the last one.
   double run_seconds = std::numeric_limits<double>::infinity();
   bool discard_first = false;  ///< one additional first run, as warm-up, which is not counted
   bool shades = false;         ///< form factors come with V, in the time of `evaluate` (Method::want_form_factors)
@@ -56,7 +56,8 @@ struct RunPlan {
   const visibility::SceneFloats** holds = nullptr;
   /// Largest number of rows evaluated at once. Between bands, Progress may stop the run.
   std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
-  /// Limit of a run, tried on the discarded first one: TakesTooLong. This run begins with tiles of a few rows.
+  /// Limit of a run's time. The discarded first run, which begins with tiles of a few rows, throws TakesTooLong if a
+  /// whole run would exceed it.
   double most_seconds = std::numeric_limits<double>::infinity();
   std::string stage = {};  ///< label of the progress bar; empty: the method's name
 };
@@ -71,9 +72,9 @@ struct RunTimes {
   double mesh = 0, light = 0, evaluate = 0;
   double view = 0;                 ///< of the first run: passing view samples to the method
   double read = 0;                 ///< of the first run: reading back, and sinks
-  std::vector<LightTimes> lights;  ///< of each of the plan's; 0 for lights that were not evaluated
-  /// The discarded run's light + evaluate less the medians, >= 0; with a limit (RunPlan::most_seconds) also less what
-  /// its additional tiles took, as estimated. Empty: no such run.
+  std::vector<LightTimes> lights;  ///< of each of the plan's lights; 0 if it was not evaluated
+  /// Time of the discarded run's light + evaluate, less the medians, >= 0; with a limit (RunPlan::most_seconds) also
+  /// less the estimated time of its additional tiles. Empty: no such run.
   std::optional<double> warmup;
   std::uint32_t runs = 0;  ///< timed runs
   double total = 0;        ///< wall-clock time of the whole call for this method, including reading back and
@@ -104,7 +105,7 @@ void add_run(MethodRun& to, MethodRun&& other);
 /// Runs a method on a session: mesh once, then light and tiles, and reads the first run's result. Applies the host's
 /// rules, here for every method: background, pixels on the light's own body, and receivers with receivesShadow = false
 /// are visible from every light sample, and receivers not lit by the light (a mesh's `lights`) from none. For a light
-/// with casters of its own, the method gets the scene in which nothing else casts. Translucent surfaces and holes are
+/// that only some objects shade, the method gets a scene in which only these cast. Translucent surfaces and holes are
 /// applied to masks after the method (visibility::AlphaFilter), in the time of `evaluate`.
 MethodRun run_method(visibility::Method& method, const Session& session, const RunPlan& plan, const TileSink& sink,
                      Progress& progress);

@@ -51,10 +51,10 @@ std::vector<std::size_t> wanted_lights(const scenes::Scene& scene, const std::ve
   return wanted;
 }
 
-/// Throws for an image that needs more memory than this machine has, before long work ends in a killed process.
+/// Throws for an image that needs more memory than this machine has; otherwise long work would end in a killed process.
 void require_image_memory(std::uint64_t width, std::uint64_t height, std::uint64_t lights, std::uint64_t pieces) {
-  // A pixel: view sample 48, scene colours, normals, depths and ids in the EXR 120, beauty 12 bytes; a light: channel
-  // of V 4, beauty and channels 24; each of its pieces: V and class 5.
+  // Bytes per pixel: 48 for the view sample, 120 for scene colours and for normals, depths and ids in the EXR, 12 for
+  // beauty; per light, 4 for the channel of V, 24 for beauty and channels; per piece of a light, 5 for V and class.
   require_memory(width * height * (180 + 28 * lights + 5 * pieces),
                  fmt::format("an image of {}x{} pixels", width, height), "choose a smaller --size");
 }
@@ -258,7 +258,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
 
   if (changed) {
     session_.floats = visibility::make_scene_floats(session_.scene);
-    if (!session_.numbers.empty()) {  // the whole scene's box: lights' sizes relate to it
+    if (!session_.numbers.empty()) {  // the whole scene's box, since lights' sizes are relative to it
       session_.floats.lower = whole_.lower;
       session_.floats.upper = whole_.upper;
     }
@@ -292,7 +292,7 @@ void SessionMaker::show(scenes::Scene scene, bool changed, const std::string& ca
   session_.load_seconds += load.seconds();
 
   const bool is_seen = runs == 0 && !changed && seen_ == session_.camera;
-  if (!is_seen) forget_view();  // before others take their memory
+  if (!is_seen) forget_view();  // frees their memory before new ones are found
   progress.begin("view samples", runs + 1);
   std::vector<double> view_seconds = {0};
   for (std::uint32_t run = is_seen ? 1 : 0; run <= runs; ++run) {

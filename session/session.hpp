@@ -71,7 +71,7 @@ struct Session {
     return std::reduce(filtered_seconds.begin(), filtered_seconds.end());
   }
   [[nodiscard]] std::size_t pixel_count() const { return std::size_t{width} * height; }
-  /// Returns the scene in which casters of this one of `lights` cast.
+  /// Returns the scene in which only the casters of this light cast (index into `lights`).
   [[nodiscard]] const visibility::SceneFloats& floats_for(std::size_t light) const {
     return light < linked_of.size() && linked_of[light] ? linked[*linked_of[light]] : floats;
   }
@@ -95,12 +95,12 @@ class SessionMaker {
   /// the picture's size or the mesh has changed, else `runs` times after a discarded run. Throws UsageError for invalid
   /// options.
   void show(scenes::Scene scene, const std::string& camera, std::uint32_t runs, Progress& progress);
-  /// Makes the session of `scene`, which is without_meshes() and has the triangles, pictures and vertices' looks of the
-  /// last one; callable after a completed show().
+  /// Makes the session of `scene`, which was made by without_meshes(), with the triangles, pictures and vertices' looks
+  /// of the last one; callable after a completed show().
   void show_again(scenes::Scene scene, const std::string& camera, Progress& progress);
   /// Replaces the search for view samples by `finder`; to be called before the first show().
   void find_view_by(ViewFinder finder) { finder_ = std::move(finder); }
-  /// Sets the lens through which view samples look from the next show() on, if the camera has one: `share` has
+  /// Sets how view samples look through the camera's lens, if it has one, from the next show() on: `share` contains
   /// everything but the lens's size. nullopt: view samples look through the lens's middle.
   void look_through_lens(std::optional<visibility::Lens> share) { lens_share_ = share; }
   /// Restricts the session to some rows of its picture from the next show() on; nullopt: all rows. Not together with
@@ -108,17 +108,17 @@ class SessionMaker {
   void look_at_rows(std::optional<visibility::Tile> rows) { band_ = rows; }
   /// Sets the scene without copies of its instances, for following calls of show_part() and show_viewed(). `scene` and
   /// `instances` must outlive these calls. Trees over meshes are kept from one scene to the next. `dome_samples`:
-  /// methods ask about the light samples of domes alone (counts_dome_samples).
+  /// of domes, methods evaluate only light samples, no areas (counts_dome_samples).
   void look_into(const scenes::Scene& scene, const scenes::Instances& instances, bool dome_samples);
   void look_away() { placed_.leave(); }
-  /// Makes the session from the part of the scene that matters to some rows of its picture (visibility/seen/): what is
-  /// seen, and what may lie between that and the lights. Pixels of other rows are background.
+  /// Makes the session from the part of the scene that matters to some rows of its picture (visibility/seen/): visible
+  /// triangles, and those that may lie between them and the lights. Pixels of other rows are background.
   void show_part(const visibility::Tile& rows, const std::string& camera, Progress& progress);
-  /// Makes the session from what pixels see alone, for methods that all_triangles() pass.
+  /// Makes the session from the visible triangles alone, for methods that are also given all_triangles().
   void show_seen(const std::string& camera, Progress& progress);
-  /// Returns all triangles of the scene that is looked into; valid until look_away() and the next look_into().
+  /// Returns all triangles of the scene given to look_into(); valid until look_away() and the next look_into().
   [[nodiscard]] const visibility::AllTriangles& all_triangles() const { return all_; }
-  /// Makes the session from what the pixels of all shown parts see, without what shades that.
+  /// Makes the session from the triangles that are visible in all shown parts, without those that only shade them.
   void show_viewed(const std::string& camera, Progress& progress);
   /// Returns the number of trees over shared meshes that look_into() built.
   [[nodiscard]] std::size_t mesh_trees_built() const { return placed_.trees_built(); }
@@ -166,7 +166,7 @@ class SessionMaker {
   std::vector<std::uint64_t> viewed_;              // triangles of placed_ that pixels of shown parts see
   visibility::Bounds whole_;                       // box of the whole scene's floats, if session_.numbers is filled
   std::optional<visibility::Tile> rows_;           // pixels of other rows are background
-  std::optional<visibility::Tile> band_;           // other rows are not there
+  std::optional<visibility::Tile> band_;           // the picture has only these rows
   ViewFinder finder_;                              // empty: the camera's pixels
   bool is_whole_ = false;                          // the last show() was completed
   std::optional<visibility::PinholeCamera> seen_;  // camera of session_.samples

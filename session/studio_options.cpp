@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses --studio, --floor, --add-light and --camera into what is added around a scene.
+// Parses --studio, --floor, --add-light and --camera into the studio that is added to a scene.
 
 #include "session/studio_options.hpp"
 

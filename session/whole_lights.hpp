@@ -12,7 +12,7 @@
 
 namespace penumbra::session {
 
-/// One of the scene's lights among Session::lights: `count` consecutive pieces, or the light itself.
+/// One of the scene's lights, as a range of Session::lights: `count` consecutive pieces, or the light itself.
 struct WholeLight {
   std::size_t first = 0, count = 1;
 };
@@ -24,7 +24,8 @@ std::vector<std::string> whole_names(std::span<const visibility::Light> lights);
 std::vector<std::size_t> wholes_of_pieces(std::span<const visibility::Light> lights);
 
 /// Returns the class of each pixel for a whole light, from its classes for each piece. Pieces with p behind them are
-/// ignored, unless all are: horizon where some piece is not completely above the horizon, judged where all are.
+/// ignored, unless p is behind all. Of the others: horizon if some piece is not completely above the horizon, judged if
+/// all pieces are.
 std::vector<visibility::PixelClass> whole_classes(const WholeLight& whole,
                                                   std::span<const std::vector<visibility::PixelClass>> pieces);
 
@@ -33,7 +34,7 @@ std::vector<visibility::PixelClass> whole_classes(const WholeLight& whole,
 ///   V(p) = Σ area_i V_i(p) / Σ area_i    over the pieces i that p is in front of,
 ///
 /// and 0 if there is none (docs/definitions.md). So V is 1 without occluders, whichever sides p sees. The area of a
-/// sphere is that of its disk. By rule 1 or 0 where each piece's is.
+/// sphere is that of its disk. Where a rule sets V of every piece to 1 or 0, V of the whole light is the same.
 std::vector<float> whole_visibility(const WholeLight& whole, std::span<const visibility::Light> lights,
                                     std::span<const std::vector<visibility::PixelClass>> classes,
                                     std::span<const std::vector<float>> visibility);

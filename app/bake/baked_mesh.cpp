@@ -22,7 +22,7 @@
 namespace penumbra::app {
 namespace {
 
-constexpr double kInset = 1.0 / 256;  // from a vertex toward the middle of a triangle
+constexpr double kInset = 1.0 / 256;  // distance of a point from its vertex; 1: the middle of the triangle
 
 /// Returns the angle of a triangle at its corner k; 0 for a triangle without area.
 double angle_at(const mesh::TriangleSoup& soup, const mesh::Triangle& triangle, std::size_t k) {

@@ -21,8 +21,9 @@ struct BakedMesh {
 /// Returns the objects with this name. Throws UsageError, with the list of existing names, if there are none.
 BakedMesh find_baked(const scenes::Scene& scene, const std::string& name);
 
-/// Makes every surface white, so that its beauty is the irradiance over π; transparency is unchanged. The camera is
-/// replaced by one that sees all of the mesh: methods that fit their maps to the view fit them to the mesh.
+/// Makes every surface white, so that its beauty is the irradiance divided by π; transparency is unchanged. The
+/// camera is replaced by one that sees all of the mesh: methods that fit their maps to the view thus fit them to the
+/// mesh.
 void prepare_scene(scenes::Scene& scene, const BakedMesh& mesh);
 
 /// Returns the texels of the mesh's lightmap. Throws InputError if there is none, or if no texel lies on the mesh.
@@ -37,7 +38,7 @@ struct VertexPoints {
   std::vector<std::uint32_t> vertices;           ///< indices of the soup's positions, in order of first use
   std::vector<mesh::Triangle> triangles;         ///< indices into `vertices`
   std::vector<visibility::SurfacePoint> points;  ///< three for each triangle, padded with empty points to a full row
-  std::vector<double> weights;                   ///< of the first of these points: the triangle's angle at the vertex
+  std::vector<double> weights;                   ///< the triangle's angle at the vertex, for all points but the padding
 };
 /// Returns the vertices and their points. `width`: points in a row.
 VertexPoints vertex_points(const scenes::Scene& scene, const BakedMesh& mesh, std::uint32_t width);
@@ -45,8 +46,8 @@ VertexPoints vertex_points(const scenes::Scene& scene, const BakedMesh& mesh, st
 /// Converts the beauty of white surfaces to irradiance; a light's own body receives none from that light.
 void make_irradiance(session::RenderedFrame& frame, const session::Session& session);
 
-/// Fills texels around those of the mesh with the values of the nearest (margin_sources); alpha stays 0 there. Texels
-/// neither covered nor in the margin are 0.
+/// Fills texels around those of the mesh with the values of the nearest mesh texels (margin_sources); alpha stays 0
+/// there. Texels neither covered nor in the margin are 0.
 void fill_margins(session::RenderedFrame& frame, std::span<const std::int64_t> sources);
 
 }  // namespace penumbra::app

@@ -29,7 +29,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Memory for each triangle that the command itself takes: its corners once more, and its number in the baked mesh.
+/// Memory per triangle that the command itself takes: a copy of the corners, and the index in the baked mesh.
 constexpr std::uint64_t kOwnTriangle = sizeof(mesh::Triangle) + sizeof(std::uint32_t);
 
 constexpr std::uint32_t kDefaultSide = 512, kMostMargin = 1024;
@@ -143,7 +143,7 @@ class BakeCommand : public Command {
     if (size.empty()) size = fmt::format("{}", kDefaultSide);
     if (session::parse_integer<std::uint32_t>(size)) size = fmt::format("{0}x{0}", size);
     std::tie(width_, height_) = session::parse_size(size);
-    // Checks the other options as `render` does, whose output's name ends in .exr.
+    // Checks the other options as `render` does for an output whose name ends in .exr.
     session::PictureOptions as_picture = options_;
     if (vertices_) {
       if (options_.run.out.extension() != ".ply")

@@ -48,7 +48,7 @@ std::vector<VertexLight> values_at_vertices(const VertexPoints& points, const se
   std::vector<double> weights(points.vertices.size());
   const auto each = [&](const auto& add) {
     for (std::size_t i = 0; i < points.weights.size(); ++i) {
-      if (session.samples.triangle[i] == visibility::ViewSamples::kBackground) continue;  // without area
+      if (session.samples.triangle[i] == visibility::ViewSamples::kBackground) continue;  // a triangle without area
       add(points.triangles[i / 3][i % 3], i, points.weights[i]);
     }
   };

@@ -22,9 +22,9 @@ struct VertexLight {
 std::vector<VertexLight> values_at_vertices(const VertexPoints& points, const session::RenderedFrame& frame,
                                             const session::Session& session);
 
-/// Writes a binary PLY: x y z in double (world space), red green blue (uchar, sRGB, the irradiance of all lights as
-/// bright as fits), V (the first light's), irradiance_r g b (of all lights), and <light>_V, _r, _g, _b of each light,
-/// in float; then the triangles. The file appears whole or not at all.
+/// Writes a binary PLY: x y z in double (world space), red green blue (uchar, sRGB: the irradiance of all lights,
+/// scaled to be as bright as fits), V (the first light's), irradiance_r g b (of all lights), and <light>_V, _r, _g, _b
+/// of each light, in float; then the triangles. The file appears whole or not at all.
 void write_vertex_ply(const std::filesystem::path& file, const std::vector<glm::dvec3>& positions,
                       const VertexPoints& points, const std::vector<VertexLight>& lights);
 

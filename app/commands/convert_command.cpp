@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// `penumbra convert`: reads a scene or a mesh, with a studio around it where asked, and writes what was understood in
-// world space, as .json, .glb or .obj. Every file that it will write is known, and refused if it is an input, before
-// reading begins.
+// `penumbra convert`: reads a scene or a mesh, adds a studio if requested, and writes the scene as the program
+// understood it, in world space, as .json, .glb or .obj. All files to be written are known before reading begins, and
+// refused if they are inputs.
 
 #include "app/commands.hpp"
 #include "app/reading_options.hpp"
@@ -60,7 +60,7 @@ class ConvertCommand : public Command {
     reading.studio = session::parse_studio(studio_, camera_);
     if (!camera_.empty() && reading.studio.fit_camera.empty() && !reading.studio.camera)
       throw UsageError("--camera {}: expected fit, or EX,EY,EZ:TX,TY,TZ[:FOV]", camera_);
-    reading.needs_light = out_.extension() != ".obj";  // which contains none
+    reading.needs_light = out_.extension() != ".obj";  // an .obj contains no light
     const scenes::WriteOptions writing{.lenient = lenient_, .instances = parse_instances()};
     scenes::Instances instances;
     reading.instances = &instances;

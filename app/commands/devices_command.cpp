@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `penumbra devices`: lists Vulkan devices and OpenGL contexts with what they lack, and the methods that do not run
-// there; `--self-test` holds each pass of a device to its twin in C++.
+// `penumbra devices`: lists Vulkan devices and OpenGL contexts with the features that they lack, and the methods that
+// do not run there; `--self-test` compares each pass on a device with its twin in C++.
 
 #include "app/commands.hpp"
 #include "app/commands/refused_methods.hpp"

@@ -41,7 +41,7 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
   }
 }
 
-/// Prints one method in full: the contents of its row, each option on lines of its own, an example of its use, its
+/// Prints one method in full: the contents of its row, each option on separate lines, an example of its use, and its
 /// page.
 void print_method(const MethodDescription& method) {
   const auto line = [](const char* label, const std::string& text) { fmt::print("{:<11} {}\n", label, text); };

@@ -73,7 +73,7 @@ class RenderCommand : public Command {
       spdlog::info("all {} pictures are there", frames.size());
       return 0;
     }
-    // The device is made while the scene is read, mostly by another process.
+    // The device is made while the scene is read, which mostly happens in another process.
     machine.begin(!request_.wish.method.empty() && session::needs_device(request_.wish.method, request_.wish.options));
     session::PictureScene now = read(frames[at]);
     now.seconds = session::seconds_since_start();  // no other work has been done yet
@@ -105,9 +105,9 @@ class RenderCommand : public Command {
     std::size_t last = at;
     while (at < frames.size()) {
       const std::size_t next = next_wanted(cameras, at + 1);
-      if (at != last + 1) renderer.forget_frames();  // the frames between were made by another run
+      if (at != last + 1) renderer.forget_frames();  // frames in between were made by another run
       last = at;
-      // The next scene is read while this one is rendered, by a process of its own.
+      // The next scene is read by a separate process while this one is rendered.
       std::future<session::PictureScene> coming;
       if (moves && next < frames.size())
         coming = std::async(std::launch::async, [this, frame = frames[next]] { return read(frame); });
@@ -170,7 +170,8 @@ class RenderCommand : public Command {
     return times;
   }
 
-  /// Returns the scenes at moment_times; empty if one scene is sufficient. `ahead`: what was read with the first one.
+  /// Returns the scenes at moment_times; empty if one scene is sufficient. `ahead`: scenes that were read with the
+  /// first one.
   [[nodiscard]] std::vector<std::function<session::PictureScene()>> moments_of(
       std::optional<double> frame, bool moves, const std::shared_ptr<scenes::ScenesAhead>& ahead) const {
     std::vector<std::function<session::PictureScene()>> all;

@@ -14,8 +14,8 @@ class SelfTestReport {
  public:
   SelfTestReport(const render::Device& device, std::vector<selftest::Check> checks);
 
-  /// Returns whether nothing failed. Checks that could not run without OpenGL are no failures, and are reported as left
-  /// out.
+  /// Returns whether nothing failed. Checks that could not run without OpenGL are not failures; they are reported as
+  /// left out.
   [[nodiscard]] bool passed() const;
   void print_table() const;
   void print_json() const;

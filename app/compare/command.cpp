@@ -95,8 +95,8 @@ void print_budgets(const compare::Metrics& metrics) {
   }
 }
 
-/// Returns the arguments that show the compared scene in the live view: `given` are those of `compare`, of which the
-/// two commands share some.
+/// Returns the arguments of `view` that show the compared scene. `given`: the command line of `compare`; the options
+/// that both commands have are passed on.
 std::vector<std::string> view_arguments(const CLI::App& given, const std::filesystem::path& scene) {
   CLI::App view;
   session::RunOptions shared;
@@ -205,7 +205,7 @@ class CompareCommand : public Command {
     print_table(metrics);
     print_budgets(metrics);
     spdlog::info("{} shows it all", (run_.out / "report.html").string());
-    // Failures have already been reported; the others' results are written nevertheless.
+    // Failures have already been reported; the results of other methods are written nevertheless.
     const auto failed =
         std::ranges::find_if(metrics.methods, [](const auto& result) { return result.failure.has_value(); });
     const bool exceeded = max_rmse_ && exceeds_max_rmse(metrics);
@@ -272,7 +272,7 @@ class CompareCommand : public Command {
                                           session::Progress& progress) const {
     if (frames_.empty()) {
       session::ComparisonOptions options = options_;
-      if (!max_rmse_) options.most_seconds = kMostGroupSeconds;  // a method that did not run has not passed
+      if (!max_rmse_) options.most_seconds = kMostGroupSeconds;  // with --max-rmse every method must run
       return session::compare_methods(run_, options, arguments, progress);
     }
     if (frame_) throw UsageError("--frames {} and --frame {}: expected one of them", frames_, *frame_);

@@ -52,7 +52,7 @@ void FrameLogs::begin() {
 void FrameLogs::add(const std::string& line) {
   if (workers_.logs.empty()) return;
   const auto go_on = [&] {
-    // of several cameras, some pictures are missing
+    // With several cameras, other pictures of the frame may still be missing.
     if (at_ >= frames_.size() || !workers_.is_there(frames_[at_])) return false;
     ++at_;
     begin();

@@ -26,7 +26,7 @@ class FrameLogs {
 
   const Workers& workers_;
   std::vector<std::int64_t> frames_;
-  bool says_when_done_;  ///< whether a picture's end has a line
+  bool says_when_done_;  ///< whether the worker prints a line after each picture
   std::size_t at_ = 0;   ///< index of the current frame
   std::ofstream log_;
 };

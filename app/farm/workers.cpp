@@ -23,7 +23,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Missing frames of one worker; `again`: one frame, which has already ended a worker.
+/// Missing frames of one worker; `again`: a single frame at which a worker has already ended.
 struct Run {
   std::vector<std::int64_t> frames;
   bool again = false;
@@ -79,14 +79,15 @@ class Worker {
   Run run_;
   FrameLogs logs_;
   ChildProgram program_;
-  std::string errors_, reason_;  // not yet passed on; kept
+  std::string errors_, reason_;  // output that is not yet passed on; the kept error message
 };
 
 /// All runs of one call of render_frames.
 class Supervisor {
  public:
   Supervisor(const Workers& workers, const std::vector<std::int64_t>& frames) : workers_(workers) {
-    // One worker takes all frames; several get their part in four runs each, so that none has much left at the end.
+    // One worker takes all frames; several get their part in four runs each, so that no worker has much left while
+    // others idle.
     const std::size_t runs = workers.at_once == 1 ? 1 : 4 * workers.at_once;
     const std::size_t size = std::max<std::size_t>(1, (frames.size() + runs - 1) / runs);
     for (const session::FrameRange& range : cut_into_tasks(frames, workers.step, size, frames.size() + 1)) {
@@ -98,7 +99,7 @@ class Supervisor {
   Supervisor(const Supervisor&) = delete;
   Supervisor& operator=(const Supervisor&) = delete;
   ~Supervisor() {
-    for (const auto& worker : running_) worker->ask_to_end();  // all, before waiting for the first
+    for (const auto& worker : running_) worker->ask_to_end();  // asks all before it waits for the first
   }
 
   std::vector<FailedFrame> run() {
@@ -128,7 +129,7 @@ class Supervisor {
     std::vector<std::int64_t> missing = worker.run().frames;
     std::erase_if(missing, workers_.is_there);
     if (missing.empty()) return;
-    session::check_interrupt();  // a signal for all may reach the workers first
+    session::check_interrupt();  // a signal to all processes may reach workers first
     const int code = worker.exit_code();
     if (code == static_cast<int>(ExitCode::usage)) throw UsageError("{}", worker.reason());
     const std::int64_t first = missing.front();

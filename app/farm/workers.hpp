@@ -30,7 +30,7 @@ struct Workers {
 /// Renders missing frames (ascending), and skips existing ones, so that nothing is rendered twice. Where a worker ends
 /// early, for any reason, its first missing frame is tried once more, alone, and the frames after it go to the next
 /// worker. Returns the frames that failed again, ascending. Output of workers goes to stderr, line by line. Throws
-/// UsageError for an invalid command line, and Interrupted; then all workers have ended.
+/// UsageError for an invalid command line, and Interrupted; all workers have then ended.
 std::vector<FailedFrame> render_frames(const Workers& workers, const std::vector<std::int64_t>& frames);
 
 }  // namespace penumbra::app

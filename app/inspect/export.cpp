@@ -46,7 +46,7 @@ constexpr std::array<Legend, 9> kLegend = {{
     {&Diagnosis::non_manifold_edges, "non-manifold edges", "magenta", {255, 0, 200}, false, true},
 }};
 
-/// Adds an edge with two points of its own: no search for the soup's vertices there.
+/// Adds an edge with two new points, which avoids a search for the soup's vertices at its ends.
 void add_edge(mesh::PlyMesh& ply, const glm::dvec3& a, const glm::dvec3& b, Color color) {
   const auto first = static_cast<std::uint32_t>(ply.positions.size());
   ply.positions.push_back(a);
@@ -54,8 +54,8 @@ void add_edge(mesh::PlyMesh& ply, const glm::dvec3& a, const glm::dvec3& b, Colo
   ply.edges.push_back({first, first + 1, color});
 }
 
-/// A T-junction's first point is the vertex, and its edge the other two; for other defects all points are the edges'
-/// ends.
+/// Adds the edges of a defect: of a T-junction, the edge between its second and third point (the first is the vertex);
+/// of any other defect, the edges between all points in turn.
 void add_edges(mesh::PlyMesh& ply, const mesh::DefectPlace& place, const Legend& legend) {
   const std::size_t first = legend.counted == &Diagnosis::t_junctions ? 1 : 0;
   for (std::size_t i = first; i + 1 < place.points.size(); ++i) {

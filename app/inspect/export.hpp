@@ -21,7 +21,7 @@ struct DefectKind {
   mesh::Color color;
   std::uint64_t count = 0;
 };
-/// Returns all kinds but intersections, in increasing order of severity.
+/// Returns all kinds except intersections, in increasing order of severity.
 std::vector<DefectKind> kinds_of_defects(const mesh::Diagnosis& diagnosis);
 
 /// All triangles of a soup with defective ones coloured, defective edges as coloured edges, and defective vertices.
@@ -34,8 +34,8 @@ struct MarkedMesh {
   std::vector<Point> points;
 };
 
-/// Returns the marked mesh. `report` must list every location. An element with several defects has the colour of the
-/// last of these in the legend.
+/// Returns the marked mesh. `report` must list every location. An element with several defects has the colour of
+/// the one that is last in the legend.
 MarkedMesh mark_defects(const mesh::TriangleSoup& soup, const session::ObjectReport& report);
 
 /// Writes the marked triangles and edges as PLY.

@@ -33,7 +33,8 @@ void write_mesh(const std::filesystem::path& file, const mesh::TriangleSoup& sou
   }
 }
 
-/// Returns the mesh that is read from a file with this soup; `file` gives name and folder, and is not written.
+/// Writes the soup under the name of `file` to a temporary folder next to it, and returns the mesh that is read from
+/// there. `file` itself is not written.
 session::InspectedMesh read_again(const std::filesystem::path& file, const mesh::TriangleSoup& soup) {
   const session::UnwindsAfterSignals unwinds;
   const std::filesystem::path parent = file.has_parent_path() ? file.parent_path() : ".";

@@ -21,8 +21,8 @@ namespace penumbra::app {
 namespace {
 
 constexpr std::chrono::milliseconds kLook(10);  // interval of polling
-constexpr std::chrono::seconds kPatience(10);   // a worker may be flushing a picture to a slow disk
-constexpr int kNotThere = 127;                  // as in shells
+constexpr std::chrono::seconds kPatience(10);   // time to end: a worker may be writing a picture to a slow disk
+constexpr int kNotThere = 127;                  // exit code of a program that was not found, as in shells
 
 }  // namespace
 
@@ -39,8 +39,9 @@ void ChildProgram::Said::read() {
   }
 }
 
-// fork in place of base/child's posix_spawn, which lets nothing be done between both programs: a worker must end with
-// this process even if this process is killed, and what the user ignores (nohup) stays ignored.
+// Uses fork, not posix_spawn as base/child does, since the child must prepare itself before it runs the program: a
+// worker must end with this process even if this process is killed, and signals that the user ignores (nohup) stay
+// ignored.
 pid_t ChildProgram::start(std::vector<std::string>& command, const Said& output, const Said& errors) {
   std::vector<char*> argv;
   for (std::string& word : command) argv.push_back(word.data());

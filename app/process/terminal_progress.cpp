@@ -21,10 +21,10 @@ namespace penumbra::app {
 
 namespace {
 
-/// Interval of lines, where there is no bar: shorter stages print nothing.
+/// Interval of lines if there is no bar; shorter stages print nothing.
 constexpr auto kSilence = std::chrono::seconds(5);
-/// Work that has taken this long may have long steps. Before that no thread is spent on them, of which a process may
-/// have few.
+/// Work that has taken this long may have long steps, which a thread then reports. Shorter work starts no thread, since
+/// a process may be allowed only a few.
 constexpr auto kShort = std::chrono::seconds(1);
 
 }  // namespace
@@ -78,7 +78,7 @@ void TerminalProgress::draw() {
     if (!reporter_.joinable() && now - made_ >= kShort) begin_reporting();
     return;
   }
-  if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a tile
+  if (now - last_draw_ < std::chrono::milliseconds(50) && done_ < steps_) return;  // a terminal is slower than a step
   last_draw_ = now;
   constexpr std::uint64_t kWidth = 30;
   const std::uint64_t filled = kWidth * done_ / steps_;
@@ -98,7 +98,7 @@ void TerminalProgress::begin_reporting() {
   try {
     reporter_ = std::jthread([this](const std::stop_token& stop) { report_long_steps(stop); });
   } catch (const std::system_error&) {
-    // No thread can be had: long steps are silent.
+    // No thread can be created: long steps are silent.
   }
 }
 

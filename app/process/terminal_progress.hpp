@@ -13,8 +13,8 @@
 
 namespace penumbra::app {
 
-/// Shows a bar on stderr if stderr is a terminal, else a line every five seconds, during a long step too; neither with
-/// --quiet. Each step also checks for an interrupt (Interrupted). Messages go to spdlog.
+/// Shows a bar on stderr if stderr is a terminal, else a line every five seconds, also during a long step. With
+/// --quiet it shows neither. Each step also checks for an interrupt (Interrupted). Messages go to spdlog.
 class TerminalProgress final : public session::Progress {
  public:
   explicit TerminalProgress(bool wanted);

@@ -33,7 +33,7 @@ class ServeCommand : public Command {
       throw UsageError("stdin is a terminal; another program sends the messages (docs/serve.md)");
     Service service(run_, STDIN_FILENO, STDOUT_FILENO);
     service.run();
-    ::_exit(0);  // immediately: finishing the current picture, or the device, could take seconds
+    ::_exit(0);  // without clean-up: waiting for the current picture or the device could take seconds
   }
 
  private:

@@ -80,14 +80,13 @@ std::optional<PipeMessage> MessageSource::next() {
 }
 
 MessageSink::MessageSink(int descriptor)
-    // A file description of its own, so that only this thread can block.
+    // Opened again, not duplicated, so that O_NONBLOCK applies to this descriptor alone.
     : out_(::open(("/proc/self/fd/" + std::to_string(descriptor)).c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC)) {
   constexpr std::size_t kAtOnce = 512;  // a pipe reported writable by poll() always accepts this many bytes
   piece_ = out_.is_open() ? std::size_t{1} << 20U : kAtOnce;
   if (!out_.is_open()) out_ = Descriptor(::fcntl(descriptor, F_DUPFD_CLOEXEC, 3));
   if (!out_.is_open()) throw ResourceError("stdout cannot be written to");
-  ::fcntl(out_.get(), F_SETPIPE_SZ, 1 << 20);  // pictures are large; a failure (no pipe, or size not permitted) is
-                                               // ignored
+  ::fcntl(out_.get(), F_SETPIPE_SZ, 1 << 20);  // pictures are large; failures are ignored (no pipe, or too large)
   thread_ = std::thread([this] { work(); });
 }
 

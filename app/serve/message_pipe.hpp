@@ -26,7 +26,7 @@ struct PipeMessage {
   std::string bytes;
 };
 
-inline constexpr std::uint32_t kLongestHead = 1U << 28U;  // names of millions of things
+inline constexpr std::uint32_t kLongestHead = 1U << 28U;  // enough for the names of millions of things
 inline constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30U;
 
 /// Returns the message in the pipe's form; `head` need not have the member "bytes".
@@ -37,20 +37,20 @@ class MessageSource {
  public:
   using Read = std::function<std::size_t(std::span<char>)>;
   explicit MessageSource(Read read) : read_(std::move(read)) {}
-  /// Returns the next message; nullopt at the end of input. Throws InputError if the input is not a message: the begin
+  /// Returns the next message; nullopt at the end of input. Throws InputError if the input is not a message: the start
   /// of the next one is then unknown.
   std::optional<PipeMessage> next();
 
  private:
   /// Returns false if the input ends before the first of these bytes. Throws if it ends among them.
   bool fill(std::span<char> bytes, const char* what);
-  /// Returns so many bytes of `what`. Throws if the input ends before them.
+  /// Returns the next `count` bytes; `what` names them in errors. Throws if the input ends before them.
   std::string take(std::uint64_t count, const char* what);
 
   Read read_;
 };
 
-/// Writes messages on a thread of its own, so that a slow or absent reader does not block the caller.
+/// Writes messages on a separate thread, so that a slow or absent reader does not block the caller.
 class MessageSink {
  public:
   /// `descriptor` is not closed by this object.
@@ -59,7 +59,7 @@ class MessageSink {
   MessageSink& operator=(const MessageSink&) = delete;
   ~MessageSink();
 
-  /// Gives waiting messages a second to be written, and waiting pictures none. Afterwards nothing is written.
+  /// Waits up to a second for waiting messages to be written; drops waiting pictures. Afterwards nothing is written.
   void finish();
 
   /// Writes messages in their order, without losses.

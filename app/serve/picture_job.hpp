@@ -23,7 +23,7 @@ class PictureJob {
   void run(const std::vector<std::string>& arguments);
 
  private:
-  /// Data that are constant from picture to picture.
+  /// Data that are kept from picture to picture.
   struct Kept {
     session::PictureOptions options;
     session::PictureRequest request;

@@ -17,19 +17,19 @@
 
 namespace penumbra::app {
 
-/// Scene of things, each of which can be replaced separately: only changed things are read again. Things are in the
-/// order of their arrival, or in a given order.
+/// Scene made of named parts ("things"), each of which can be replaced separately: only changed things are read again.
+/// Things are in the order of their arrival, or in a given order.
 ///
 /// Names of nodes in put files begin with the name of their thing, THING␟NAME or THING␟NUMBER␟NAME (kThingEnds); nodes
-/// of one thing are contiguous. With numbers all nodes of a file differ, so that equal names are told apart only where
-/// all things are joined, as in one file. Nodes without this prefix belong to the thing "".
+/// of one thing are contiguous. The numbers make all node names of a file distinct, so that equal NAMEs are renamed
+/// only where all things are joined, as if they were in one file. Nodes without this prefix belong to the thing "".
 class SceneParts {
  public:
   static constexpr std::string_view kThingEnds = "\xe2\x90\x9f";  ///< ␟, U+241F
 
-  /// File of some things.
+  /// What to replace by a file with some of the things.
   struct Put {
-    std::set<std::string> things = {};     ///< replaced even if nothing of them is in the file: then they are empty
+    std::set<std::string> things = {};     ///< things to be replaced; those that the file lacks become empty
     std::set<std::string> shadeless = {};  ///< things whose lamps cast no shadows
     std::filesystem::path folder = {};     ///< of the pictures named in the file; empty: the file names none
   };

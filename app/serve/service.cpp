@@ -75,7 +75,7 @@ std::size_t read_some(int descriptor, std::span<char> into) {
   }
 }
 
-/// Adds a list of numbers as bytes, and its line to the head.
+/// Appends a list of numbers as bytes, and their description `line` to the list in the message's head.
 template <typename T>
 void add_buffer(std::string& bytes, ordered_json& listed, ordered_json line, const std::vector<T>& numbers) {
   constexpr std::size_t kChannelBytes = sizeof(float);
@@ -87,7 +87,7 @@ void add_buffer(std::string& bytes, ordered_json& listed, ordered_json line, con
 
 }  // namespace
 
-/// Has a picture cancelled at the end of the input, during its lifetime.
+/// During its lifetime, the end of the input cancels the current picture.
 class Service::Renders {
  public:
   explicit Renders(Inbox& inbox) : inbox_(inbox) {

@@ -51,7 +51,7 @@ class Service {
   void render(const nlohmann::json& message);
   void send_picture(const LivePicture& picture);
   void say(std::string_view level, const std::string& text);
-  /// Says that a message is refused, with its stamp if it has one.
+  /// Sends an error about a refused message, with the message's stamp if it has one.
   void refuse(const nlohmann::json& message, const std::string& text);
 
   session::RunOptions options_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses `--over KEY=…` of `sweep`: lists, A..B (each value twice the one before) and A..B+STEP, into at most 63 values
-// a key.
+// Parses `--over KEY=…` of `sweep`: lists, A..B (each value twice the previous one) and A..B+STEP, into at most 63
+// values per key.
 
 #include "app/sweep/ranges.hpp"
 
@@ -38,7 +38,7 @@ std::vector<std::string> values_of(std::string_view text, std::string_view whole
   for (std::size_t i = 0; i <= kMostValues; ++i) {
     const auto n = static_cast<double>(i);
     const double value = *step > 0 ? *first + n * *step : *first * static_cast<double>(std::uint64_t{1} << i % 64);
-    // A step such as 0.1 is not exactly representable: the last value may be beyond the end by rounding.
+    // A step such as 0.1 is not exactly representable: the last value may be rounded beyond the end.
     if (value > *last + std::abs(*last) * 0x1p-40) return values;
     values.push_back(fmt::format("{:.12g}", value));
     if (i == 63) break;

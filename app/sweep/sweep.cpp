@@ -76,7 +76,7 @@ struct SetHalf {
     const double larger = std::max({extent.x, extent.y, extent.z});
     for (glm::dvec3& vertex : light.vertices) vertex = center + (vertex - center) * (half / larger);
   }
-  void operator()(auto& /*light*/) const {}  // without an extent, or fixed
+  void operator()(auto& /*light*/) const {}  // lights without an extent, or of fixed size
 
  private:
   void scale(glm::dvec3& u, glm::dvec3& v) const {

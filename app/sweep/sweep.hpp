@@ -21,7 +21,7 @@ struct SweepRow {
   bool on_hull = false;  ///< under this light no other row has both less error and less time
 };
 
-/// Least seconds for the shadow of a method with an error of V of at most `rmse`.
+/// Least seconds that a method needs for shadows with an error of V of at most `rmse`.
 struct SecondsTo {
   double rmse = 0;
   std::optional<double> seconds = {};  ///< nullopt: no row of the method has so small an error
@@ -45,7 +45,7 @@ struct Sweep {
 /// Compares each of the methods at each value of the keys that are its options (all products), under each size of the
 /// lights (light.half: the larger half of a light's extent in the scene's unit; light.angle: a sun's diameter in
 /// degrees), and for each number of light-samples if the method uses light samples. Throws UsageError for a key without
-/// effect, and as compare_methods().
+/// effect, and the same errors as compare_methods().
 Sweep sweep_methods(const scenes::Scene& scene, const session::RunOptions& run, session::ComparisonOptions options,
                     std::vector<SweptKey> over, session::Progress& progress);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Notices that files on disk changed, by time and size, once two looks in a row agree: a program that is still writing
-// a file would otherwise be read half-way.
+// Notices that files on disk changed, by time and size. A change is reported once two checks in a row agree, so that
+// no file is read while another program is still writing it.
 
 #include "app/view/file_watch.hpp"
 

@@ -109,7 +109,7 @@ scenes::AreaLight changed_light(const scenes::AreaLight& light, const json& chan
   }
   const bool has_own_shape = has_shape(light_json(light));
   const bool is_same_kind = has_own_shape == has_shape(own);
-  if (!has_own_shape) own["sphere"] = {{"center", {0, 0, 0}}, {"radius", 1}};  // a stand-in: files have a shape each
+  if (!has_own_shape) own["sphere"] = {{"center", {0, 0, 0}}, {"radius", 1}};  // placeholder: files need a shape
   const scenes::AreaLight read = read_alone(std::move(own), {{"eye", {0, 0, 1}}, {"target", {0, 0, 0}}}).lights.front();
   if (!is_same_kind || (has_own_shape && read.shape.index() != light.shape.index()))
     throw InputError("light \"{}\": its kind stays what it is", light.name);
@@ -137,7 +137,7 @@ scenes::Camera changed_camera(const scenes::Camera& camera, const json& change) 
   made.vertical_fov = read.vertical_fov;
   made.height = read.height;
   if (change.contains("shift")) made.shift = read.shift;
-  visibility::make_camera(made, {}, 1, 1);  // refuses one that sees nothing
+  visibility::make_camera(made, {}, 1, 1);  // throws for a camera that sees nothing
   return made;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Outline of what hides a light from a point, drawn in the light's own coordinates s, t in [−1, 1]. Triangles are
-// clipped as (s·height, t·height, height), before the division; a sphere or sun is the cone of directions that the
-// point sees.
+// clipped as (s·height, t·height, height), before the division; a sphere or sun is the cone of directions from
+// the point to it.
 
 #include "app/view/light_outline.hpp"
 
@@ -28,8 +28,8 @@ struct LightView {
   LightOutline::Rim rim = LightOutline::Rim::square;
 };
 
-/// Projects on a plane through `center` with halves u and v; returns nullopt for a point in this plane, or behind a
-/// light that emits to one side.
+/// Projects onto the plane through `center` with the half extents u and v; returns nullopt for a point in this plane,
+/// or behind a light that emits to one side.
 std::optional<LightView> view_of_plane(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& v,
                                        const glm::dvec3& point, bool two_sided) {
   const glm::dvec3 normal = glm::cross(u, v), away = point - center;
@@ -37,14 +37,14 @@ std::optional<LightView> view_of_plane(const glm::dvec3& center, const glm::dvec
   if (!(squared > 0) || (two_sided ? side == 0 : side <= 0)) return std::nullopt;
   LightView view;
   view.height_axis = normal / -side;
-  // Coordinates of the point's foot in the plane, in halves; then moved from the foot to the centre.
+  // s and t are first relative to the point's foot in the plane, in units of u and v; then to the light's centre.
   const glm::dvec3 s = glm::cross(v, normal) / squared, t = glm::cross(normal, u) / squared;
   view.s_axis = s + glm::dot(away, s) * view.height_axis;
   view.t_axis = t + glm::dot(away, t) * view.height_axis;
   return view;
 }
 
-/// Projects on a cone of directions about `axis` (unit) whose half angle has this tangent; surfaces farther than
+/// Projects onto a cone of directions about `axis` (unit) whose half angle has this tangent; surfaces farther than
 /// `distance` are behind the light.
 LightView view_of_cone(const glm::dvec3& axis, double tangent, double distance) {
   const glm::dvec3 aside = std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
@@ -105,7 +105,7 @@ struct ViewOf {
   }
 };
 
-/// Returns (s · height, t · height, height).
+/// Homogeneous coordinates (s · height, t · height, height).
 using Flat = glm::dvec3;
 
 /// Clips a convex polygon to dot(plane, q) ≥ least.

@@ -15,8 +15,8 @@
 
 namespace penumbra::app {
 
-/// A light as a point sees it, with the blockers in front of it projected on it. Its rim is the square from −1 to 1, or
-/// the circle of radius 1 in it, or a polygon in it.
+/// A light as seen from a point, with the blockers in front of it projected onto it. Its rim is the square from −1 to
+/// 1, or the circle of radius 1 in that square, or a polygon in it.
 struct LightOutline {
   enum class Rim { square, circle, polygon };
   Rim rim = Rim::square;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::array kLevels{LiveQuality{1, 64}, LiveQuality{1, 16}, LiveQuality{2, 16},
                              LiveQuality{2, 4},  LiveQuality{4, 4},  LiveQuality{8, 4}};
 
-/// Milliseconds; a picture that takes longer is followed by one of the lowest quality.
+/// Milliseconds; after a picture that takes longer, the next one has the lowest quality.
 constexpr double kSlowTime = 8 * kPictureTime;
 
 constexpr int kLongestPatience = 256;  // in pictures

@@ -8,11 +8,11 @@
 
 namespace penumbra::app {
 
-/// Milliseconds of one picture. A move that comes just after a picture began waits for two, and is to be seen within
-/// 120 ms.
+/// Largest time of one picture during changes, in milliseconds. A move that comes just after a picture began is shown
+/// after two pictures, and must be seen within 120 ms.
 inline constexpr double kPictureTime = 45;
-/// Milliseconds; a faster picture leaves time for a better one. A final picture that is as fast needs no quick one
-/// before it.
+/// Milliseconds; a picture faster than this leaves time for better quality. A final picture that is as fast is rendered
+/// at once, without a quick one first.
 inline constexpr double kQuickTime = 20;
 
 /// Quality of a picture during changes.
@@ -25,7 +25,7 @@ struct LiveQuality {
 class SlowMethods {
  public:
   /// Records the duration of a method's part of a picture; a method is slow after two slow pictures in a row, since the
-  /// first may include what it prepares. `lowest`: the picture has the lowest quality.
+  /// first may include its preparation. `lowest`: the picture has the lowest quality.
   void took(const std::string& entry, double milliseconds, bool lowest);
   /// Records the duration of a method's part of a final picture: a method that is fast there is not slow.
   void took_final(const std::string& entry, double milliseconds);
@@ -36,7 +36,7 @@ class SlowMethods {
   std::set<std::string> entries_, once_;  // once_: the last picture was slow
 };
 
-/// Chooses the best quality with pictures of at most kPictureTime, about twenty a second.
+/// Chooses the best quality whose pictures take at most kPictureTime, about twenty a second.
 class LivePace {
  public:
   [[nodiscard]] LiveQuality quality() const;

@@ -92,7 +92,7 @@ std::vector<std::pair<const char*, Image8>> images_of(const LivePicture& picture
                                                                  visibility_of(picture, 1, display.light), *limit));
         return images;
       }
-      [[fallthrough]];  // nothing to compare with
+      [[fallthrough]];  // there is no second method to compare with
     case LiveChannel::visibility:
       for (std::size_t i = 0; i < picture.answers.size(); ++i)
         images.emplace_back(i == 0 ? "a" : "b",

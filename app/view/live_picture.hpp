@@ -20,7 +20,7 @@ namespace penumbra::app {
 /// Result of one of the displayed methods.
 struct LiveAnswer {
   std::string method;               ///< with its options, in the page's form
-  std::uint32_t light_samples = 0;  ///< 0: areas, or a method without light samples
+  std::uint32_t light_samples = 0;  ///< 0: exact areas, or a method without light samples
   session::RenderedFrame frame;
   nlohmann::ordered_json seconds;  ///< as in stats.json
   double milliseconds = 0;         ///< of the shadow: phases light and evaluate
@@ -62,7 +62,7 @@ std::optional<LiveDifference> difference(const LivePicture& picture, const std::
 std::string frame_message(const LivePicture& picture, const LiveDisplay& display, const nlohmann::ordered_json& more);
 
 /// Returns all answers at one pixel of the final picture's size. `whole`: provides the names of the meshes; `masks` may
-/// be null, or of another picture.
+/// be null, or belong to another picture.
 nlohmann::ordered_json pixel_json(const LivePicture& picture, glm::uvec2 pixel, const WholeScene& whole,
                                   const LiveMasks* masks);
 

@@ -166,7 +166,7 @@ ordered_json LiveRenderer::pixel(std::uint32_t x, std::uint32_t y) const {
   if (!picture || picture->triangles != scenes::triangle_count(whole->scene, whole->instances))
     return {{"type", "pixel"}, {"x", x}, {"y", y}};
   ordered_json made = pixel_json(*picture, {x, y}, *whole, masks.get());
-  if (light && made["surface"] && whole->instances.empty()) {  // an outline is cut by all triangles
+  if (light && made["surface"] && whole->instances.empty()) {  // the outline needs all triangles
     const ordered_json& p = made["position"];
     const auto triangle = made["id"].get<std::size_t>();
     if (const auto outline = light_outline(whole->scene, *light, {{p[0], p[1], p[2]}, triangle}))

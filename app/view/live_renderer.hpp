@@ -31,7 +31,7 @@ namespace penumbra::app {
 struct LiveEvents {
   std::function<void(std::shared_ptr<const std::string>)> frame;  ///< frame_message()
   std::function<void(std::string_view level, const std::string& text)> say;
-  std::function<void()> reloaded;  ///< the state is that of another version of the file
+  std::function<void()> reloaded;                                        ///< the scene's file was read again
   std::function<void(std::shared_ptr<const LivePicture>)> picture = {};  ///< numbers of the displayed picture
   /// Whether LiveRenderer::shown() is called for frames. The next picture of a drag then waits for the last frame.
   bool says_shown = false;
@@ -40,7 +40,7 @@ struct LiveEvents {
 /// Scene that replaces the displayed one.
 struct LiveScene {
   scenes::Scene scene;
-  bool same_meshes = false;  ///< `scene` is without_meshes(), and has the meshes of the last scene
+  bool same_meshes = false;  ///< `scene` was made by without_meshes(); the last scene's meshes are used
 };
 
 /// Several changes applied together.
@@ -58,7 +58,7 @@ struct LiveScenery {
   std::shared_ptr<const LivePicture> picture;  ///< may be null, or of an earlier state
 };
 
-/// Renders a state that changes during rendering, on a thread of its own: quick pictures while it changes, then a final
+/// Renders a state that changes during rendering, on a separate thread: quick pictures while it changes, then a final
 /// one, which is cancelled if the state changes again. Meshes, view samples and methods are kept from picture to
 /// picture. Thread-safe.
 class LiveRenderer {
@@ -87,8 +87,8 @@ class LiveRenderer {
   [[nodiscard]] nlohmann::ordered_json pixel(std::uint32_t x, std::uint32_t y) const;
   /// Returns the name of the file that the changed scene is saved as.
   [[nodiscard]] std::string saved_name() const;
-  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance. The text names each
-  /// light's picture as state() does under `saved`.
+  /// Returns the changed scene, in the form of `convert`; lights that are off have no radiance. The text uses the
+  /// file names of lights' pictures that state() lists under `saved`.
   [[nodiscard]] std::string scene_text() const;
   /// Returns the picture of a light, as an EXR file. Throws UsageError if there is none.
   [[nodiscard]] std::string light_picture(const std::string& light) const;
@@ -113,9 +113,9 @@ class LiveRenderer {
   void read_again();
   void make_picture(const Order& order);
   void make_masks(const Order& order);
-  /// Returns whether masks are requested that do not exist.
+  /// Returns whether masks are requested but do not exist yet.
   [[nodiscard]] bool needs_masks() const;
-  /// Returns whether pictures are to tell the number of the mesh's edges, which is unknown.
+  /// Returns whether pictures must report the number of the mesh's edges, and it is not yet known.
   [[nodiscard]] bool needs_edges() const { return events_.frame && counted_ != whole_; }
   /// Counts the edges of the displayed mesh, and shows the picture again with their number.
   void count_edges(const std::shared_ptr<const WholeScene>& whole);

@@ -53,13 +53,13 @@ nlohmann::ordered_json to_json(const LiveState& state);
 /// Returns the names of the lights that are on.
 std::vector<std::string> lights_on(const LiveState& state);
 
-/// Returns the state on another version of the scene's file: values that differ between the file's versions are taken
-/// from the new one, all others as changed by the user. `before`: the file's previous scene, without meshes.
+/// Returns the state for a new version of the scene's file: values that differ between the two versions are taken from
+/// the new one; all others stay as changed by the user. `before`: the file's previous scene, without meshes.
 LiveState reloaded(const LiveState& state, const scenes::Scene& before, scenes::Scene now);
 
 /// Returns whether the scenes differ in lights and cameras alone.
 bool same_meshes(const scenes::Scene& a, const scenes::Scene& b);
-/// Returns a scene that is without_meshes() with the meshes of another.
+/// Returns a scene that was made by without_meshes(), with the meshes of another.
 scenes::Scene with_meshes(scenes::Scene scene, const scenes::Scene& meshes);
 
 }  // namespace penumbra::app

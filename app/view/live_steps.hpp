@@ -25,7 +25,8 @@ class LiveRenderer::Steps final : public session::Progress {
   /// Sets the revision of the current picture; 0: not cancelled.
   void set_revision(std::uint64_t revision) { revision_ = revision; }
 
-  /// The search for view samples is always completed: a part of them could not be kept.
+  /// Records whether the stage may stop early: the search for view samples is always completed, since a part of them
+  /// could not be kept.
   void begin(std::string stage, std::uint64_t) override { can_stop_ = stage != "view samples" && stage != "receivers"; }
   using session::Progress::advance;
   void advance(std::uint64_t) override {

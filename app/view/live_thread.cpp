@@ -33,7 +33,8 @@ constexpr std::uint32_t kBand = 64;
 constexpr std::chrono::milliseconds kLongestShow{250};
 /// Time that a final picture waits for further changes during a drag.
 constexpr std::chrono::milliseconds kPause{90};
-constexpr std::chrono::milliseconds kPauseOfSlow{1000};  // of a slow method, which is cancelled late
+/// The same for a slow method, which notices a cancellation late.
+constexpr std::chrono::milliseconds kPauseOfSlow{1000};
 
 }  // namespace
 
@@ -75,8 +76,8 @@ void LiveRenderer::work_on(std::unique_lock<std::mutex>& lock) {
     lock.lock();
     return;
   }
-  // A frame made while a slow page still draws the last one would be old when its turn comes, and takes the page's
-  // processor time.
+  // Waits until the page has drawn the last frame: a frame made earlier would be outdated when a slow page comes to
+  // draw it, and would take processor time from the page.
   if (state_.moving && !wants_show_) {
     wake_.wait_for(lock, kLongestShow,
                    [this] { return !is_awaited_ || ending_ || wants_reload_ || wants_show_ || !state_.moving; });
@@ -185,8 +186,8 @@ void LiveRenderer::render(const Order& order, scenes::Scene scene, bool keeps_ma
   frames_->render(std::move(scene), frame, {}, 0);
 }
 
-/// Quick pictures of areas, and of methods that are too slow for them, use light samples of the default method for
-/// light samples.
+/// Returns what to render for an entry. Quick pictures of exact areas, and of methods that are too slow for quick
+/// pictures, use the default method for light samples instead.
 session::MethodWish LiveRenderer::wish_for(const Order& order, const std::string& entry) {
   session::NamedMethod method = session::parse_method(entry);
   const std::uint32_t asked = order.state.light_samples;

@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 
 namespace {
 
-/// Returns the colours of signed errors from the darkest to the brightest, evenly spaced in depth.
+/// Returns the colours of signed errors from the darkest to the brightest, in equal steps of colour depth.
 ordered_json error_scale() {
   auto colors = ordered_json::array();
   const auto dark = compare::error_colors(false), bright = compare::error_colors(true);
@@ -72,7 +72,7 @@ LiveView::LiveView(session::RunOptions options, WholeScene whole, network::Serve
   space_ = std::make_unique<SpaceView>(*renderer_);
 }
 
-/// Only a reader of the address knows the token, and the address is printed after renderer_ is set.
+/// renderer_ is set: a client needs the token, which is in the address that is printed only afterwards.
 void LiveView::opened(network::ClientId client) {
   server_->send(client, fmt::format(R"({{"type": "hello", "client": {}, "methods": {}, "errorColors": {}}})", client,
                                     methods_, error_scale_));

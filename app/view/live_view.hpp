@@ -35,7 +35,7 @@ class LiveView final : public network::PageHandler {
   void send_state(network::ClientId except);
 
   std::string methods_, error_scale_;  // JSON
-  std::mutex sending_;  // a state is sent before the next is taken: otherwise an old one could be sent last
+  std::mutex sending_;  // held from reading a state until it is sent, so that an older state is never sent last
   std::unique_ptr<network::PageServer> server_;
   std::unique_ptr<LiveRenderer> renderer_;  // calls the server, therefore destroyed first
   std::unique_ptr<SpaceView> space_;

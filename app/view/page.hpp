@@ -5,10 +5,10 @@
 
 namespace penumbra::app {
 
-/// Parts of the page: app/view/page/.
+/// Parts of the page, from the files in app/view/page/.
 extern const std::string_view kViewStyle, kViewScript, kViewMarkup;
 
-/// The script of three.js, as the package libjs-three had it when the program was built; empty: it was not there.
+/// Script of three.js from the package libjs-three; empty if the package was not installed when the program was built.
 extern const std::string_view kThreeScript;
 
 }  // namespace penumbra::app

@@ -113,7 +113,7 @@ ShownTriangles shown_triangles(std::span<const glm::vec3> positions, std::span<c
 }
 
 std::string meshes_message(const scenes::Scene& scene, const visibility::SceneFloats& floats) {
-  // The soup's own corners, in their order: a triangle's winding says which side is its front.
+  // The soup's own corners, in their order: a triangle's winding determines its front side.
   const ShownTriangles shown =
       shown_triangles(floats.positions, scene.soup.triangles, scene.soup.object, kMostShownTriangles);
   auto objects = ordered_json::array();

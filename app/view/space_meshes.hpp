@@ -17,7 +17,7 @@ namespace penumbra::app {
 
 /// Largest number of triangles that the 3D view draws; meshes with more are coarsened.
 inline constexpr std::size_t kMostShownTriangles = 500'000;
-/// Largest number of places of one kind of defect that are shown of an object.
+/// Largest number of places of one kind of defect that are shown for an object.
 inline constexpr std::size_t kMostShownDefects = 20'000;
 
 /// Triangles as drawn.
@@ -29,7 +29,7 @@ struct ShownTriangles {
 
 /// Returns the triangles with positions merged in the cells of a cubic grid, each with the first position in the cell,
 /// and without the triangles that thereby lose a corner. The grid is the finest of 1024, 512, 256, … cells along the
-/// longest side that leaves at most `most` triangles; nothing is merged if there are not more.
+/// longest side that leaves at most `most` triangles; nothing is merged if there are no more than `most`.
 ShownTriangles shown_triangles(std::span<const glm::vec3> positions, std::span<const mesh::Triangle> triangles,
                                std::span<const std::uint32_t> objects, std::size_t most);
 

@@ -45,13 +45,13 @@ std::vector<glm::dvec3> part_below(const std::vector<glm::dvec3>& polygon, int k
     if (over_a <= 0) kept.push_back(a);
     if ((over_a <= 0) != (over_b <= 0)) {
       kept.push_back(a + over_a / (over_a - over_b) * (b - a));
-      kept.back()[k] = direction * most;  // not beyond by rounding
+      kept.back()[k] = direction * most;  // exactly on the boundary, despite rounding
     }
   }
   return kept;
 }
 
-/// Returns a point of the side behind `end`, outside the box.
+/// Returns a point on the ray from `l` through `end`, beyond `end` and outside the box.
 glm::dvec3 far_behind(const glm::dvec3& end, const glm::dvec3& l, const volumes::Box& box) {
   const glm::dvec3 direction = end - l;
   return end + 2 * glm::length(box.upper - box.lower) / glm::length(direction) * direction;
@@ -103,7 +103,7 @@ void add_silhouettes(SpaceMessage& message, ordered_json& header, const volumes:
   header["sides"] = side_triangles.size();
 }
 
-/// Adds the bodies of the wedges that are asked for, and what the floor cuts out of them.
+/// Adds the bodies of the requested wedges, and the lines in which the floor cuts them.
 void add_bodies(SpaceMessage& message, ordered_json& header, const session::LightWedges& made, const volumes::Box& box,
                 const SpaceShadows& request, double floor) {
   std::vector<std::uint32_t> numbers;

@@ -17,15 +17,15 @@
 
 namespace penumbra::app {
 
-/// Largest number of wedges whose bodies are sent at once, and of silhouette edges whose shadow volume is.
+/// Largest number of wedges whose bodies are sent at once, and of silhouette edges whose shadow volume is sent.
 inline constexpr std::size_t kMostShownBodies = 2'000, kMostShownSides = 50'000;
-/// Largest number of wedges that are named of one point.
+/// Largest number of wedges containing a point that are listed by their numbers.
 inline constexpr std::size_t kMostNamedWedges = 1'000;
 
 /// Request of the 3D view: which of a light's shadows to show.
 struct SpaceShadows {
   session::WedgeRequest wedges = {};        ///< light, construction and from
-  glm::dvec2 place{0};                      ///< point of the light, from which silhouettes are: light_point()
+  glm::dvec2 place{0};                      ///< point of the light from which silhouettes are seen: light_point()
   std::optional<double> floor = {};         ///< height of the plane that bodies are cut by; nullopt: the lowest point
   std::optional<std::uint32_t> wedge = {};  ///< only this wedge's body; nullopt: all
   std::optional<glm::dvec3> point = {};     ///< point whose wedges are named, relative to the origin
@@ -36,13 +36,13 @@ struct SpaceShadows {
 /// light.
 glm::dvec3 light_point(const visibility::Light& light, const glm::dvec2& place);
 
-/// Returns the part in the box of the shadow volume's side of an edge a b: all a + t (a − l) and b + t (b − l), t ≥ 0,
-/// and what is between; a convex polygon, empty if the edge's ends and l are on a line.
+/// Returns the side of the shadow volume that belongs to an edge a b, clipped to the box: the area between the rays
+/// a + t (a − l) and b + t (b − l), t ≥ 0. It is a convex polygon, and empty if the edge's ends and l are on a line.
 std::vector<glm::dvec3> volume_side(const std::array<glm::dvec3, 2>& edge, const glm::dvec3& l,
                                     const volumes::Box& box);
 
-/// Returns the line, in the box, in which such a side meets the plane y = `height`; nullopt: it does not, or lies in
-/// it.
+/// Returns the line, within the box, in which volume_side() meets the plane y = `height`; nullopt if it does not meet
+/// the plane, or lies in it.
 std::optional<std::array<glm::dvec3, 2>> side_at(const std::array<glm::dvec3, 2>& edge, const glm::dvec3& l,
                                                  const volumes::Box& box, double height);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers of the live view's 3D page: the scene's triangles, its defects, and the wedges and shadow volumes of a light,
-// as seen from a chosen pixel if there is one. Floats of the scene and casters are kept until the scene changes.
+// Answers of the live view's 3D page: the scene's triangles, its defects, the wedges and shadow volumes of a light, and
+// the wedges that contain the surface at a chosen pixel. Floats of the scene and casters are kept until the scene
+// changes.
 
 #include "app/view/space_view.hpp"
 

@@ -23,9 +23,9 @@ class SpaceView {
   // The following functions throw UsageError for scenes with instances without copies.
   std::string meshes();
   std::string defects();
-  /// `target`: of the request, with the parameters light, construction, from, s, t, floor, wedge, and x and y of a
-  /// pixel. A light without wedges has none: the header says so in `refused`. Throws UsageError for an invalid
-  /// parameter.
+  /// `target`: the request's target, with the parameters light, construction, from, s, t, floor, wedge, and x and y of
+  /// a pixel. For a light that cannot have wedges, the header contains the reason in `refused`. Throws UsageError for
+  /// an invalid parameter.
   std::string shadows(std::string_view target);
 
  private:
@@ -33,7 +33,7 @@ class SpaceView {
   const volumes::Casters& casters_of(const LiveScenery& scenery, const visibility::Light& light);
 
   const LiveRenderer& renderer_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   std::shared_ptr<const WholeScene> scene_;
   visibility::SceneFloats floats_;  // of scene_
   volumes::Casters casters_;
@@ -42,7 +42,7 @@ class SpaceView {
     std::vector<std::uint8_t> unshaded_by;
     bool operator==(const CastersOf&) const = default;
   };
-  std::optional<CastersOf> casters_of_;  // nullopt: casters_ is of no light
+  std::optional<CastersOf> casters_of_;  // nullopt: casters_ is not valid for any light
 };
 
 /// Returns the request in a target's parameters; `point` is not set. Throws UsageError.

@@ -38,7 +38,7 @@ WholeScene read_whole_scene(const session::RunOptions& options, session::Instanc
 void require_no_copies(const scenes::Scene& scene, const scenes::Instances& instances,
                        const session::MethodWish& wish) {
   if (instances.empty()) return;
-  // Throws for methods that look at more than what lies between view samples and lights.
+  // Throws for methods that need more than the triangles between view samples and lights.
   static_cast<void>(session::needs_copies(scene, instances, session::parse_instances("shared", wish), wish, 1));
   const std::uint64_t triangles = scenes::triangle_count(scene, instances);
   if (triangles <= kMostCopies || session::counts_dome_samples(wish, scene.lights)) return;

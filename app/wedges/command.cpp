@@ -30,7 +30,7 @@
 namespace penumbra::app {
 namespace {
 
-/// Returns the index of the element with this name; for an empty name the first.
+/// Returns the index of the element with this name; 0 for an empty name.
 template <typename Named>
 std::uint32_t find_named(const std::vector<Named>& all, const char* option, const std::string& name,
                          const scenes::Scene& scene) {

@@ -3,9 +3,10 @@
 
     blender -b FILE.blend --python-exit-code 1 -P render.py -- OUT.exr ENGINE SAMPLES PART SEED PENUMBRA [X0 X1 Y0 Y1]
 
-`ENGINE`: CYCLES or PENUMBRA. `SAMPLES`: light samples a pixel of Cycles. `PART` centres: all at the pixel's centre; motion: likewise, while
-the shutter is open for half a frame; antialiased: under a Blackman-Harris filter of 1.5 pixels, by 16 view samples of Penumbra; lens:
-likewise, through the camera's lens. X0 to Y1: the crop, as shares of the picture, Y upward.
+`ENGINE`: CYCLES or PENUMBRA. `SAMPLES`: light samples a pixel of Cycles. `PART`: centres (one view sample at each
+pixel's centre), motion (as centres, while the shutter is open for half a frame), antialiased (a Blackman-Harris filter
+of 1.5 pixels, with 16 view samples of Penumbra) or lens (as antialiased, through the camera's lens). X0 to Y1: the
+crop, as fractions of the picture, Y upward.
 """
 
 import sys
@@ -28,7 +29,7 @@ if CROP:
     render.use_border, render.use_crop_to_border = True, True
     render.border_min_x, render.border_max_x, render.border_min_y, render.border_max_y = map(float, CROP)
 if ENGINE == "CYCLES":
-    # Direct light alone, every sample a fair one.
+    # Only direct light, and no settings that bias samples.
     cycles = scene.cycles
     cycles.samples, cycles.seed, cycles.max_bounces = int(SAMPLES), int(SEED), 0
     cycles.use_denoising, cycles.use_adaptive_sampling = False, False
@@ -42,7 +43,7 @@ else:
     bpy.context.preferences.addons["penumbra"].preferences.program = PENUMBRA
     scene.penumbra.pixel_samples = "16" if is_filtered else "1"
     scene.penumbra.pixel_filter, scene.penumbra.filter_width = "BLACKMAN_HARRIS", 1.5
-    if PART == "motion":  # open for as long as Cycles exposes (against_cycles.py), from where its shutter opens
+    if PART == "motion":  # open as long as Cycles exposes (against_cycles.py), from the start of its shutter time
         from penumbra.motion import position_owner
         position_owner(scene).motion_blur_position = "START"
         render.motion_blur_shutter *= 254 / 256

@@ -3,9 +3,10 @@
 
     blender -b --factory-startup --python-exit-code 1 -P scenes.py -- ADDON.zip FOLDER WIDTH HEIGHT [NAME …]
 
-Without names the five of against_cycles.py. Writes FOLDER/NAME.blend, FOLDER/NAME.glb as the add-on hands it to the program, and
-FOLDER/NAME.json: `triangles`; `aperture` and `focus`, of the camera's lens, which is switched off; `mover`, the object that moves in Blender's animation,
-by `step` from frame to frame. The exchange file is of frame 1.
+Without names, writes the five scenes of against_cycles.py. Files: FOLDER/NAME.blend; FOLDER/NAME.glb, as the add-on
+gives it to the program, at frame 1; and FOLDER/NAME.json with `triangles`, with `aperture` and `focus` of the camera's
+lens, which is switched off, and with `mover`, the object that moves in Blender's animation by `step` from frame to
+frame.
 """
 
 import json
@@ -66,7 +67,7 @@ def camera(location=(4.2, -5.0, 3.4), target=(0, 0, 0.6), angle=40):
 
 
 def still_life():
-    """A few hundred triangles."""
+    """Makes a still life of a few hundred triangles."""
     floor()
     bpy.ops.mesh.primitive_torus_add(location=(0.9, -0.2, 0.3), major_radius=0.6, minor_radius=0.22, major_segments=24, minor_segments=12)
     place(bpy.context.object, "Ring", (0.8, 0.4, 0.3))
@@ -87,7 +88,7 @@ def large_penumbrae():
 
 
 def dense():
-    """A terrain and a bumpy ball of 504,000 triangles together, none larger than a few pixels."""
+    """Makes a terrain and a bumpy ball with 504,000 triangles in total, none larger than a few pixels."""
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=420, y_subdivisions=210, size=8)
     terrain = place(bpy.context.object, "Terrain", (0.6, 0.6, 0.5))
     for vertex in terrain.data.vertices:
@@ -136,7 +137,8 @@ def sky():
 
 
 def lamps(count):
-    """Point lamps, spot lamps and rectangles in turn over a floor of 40 × 40 with 64 blocks; the same numbers in every run."""
+    """Makes point lamps, spot lamps and rectangles in turn over a floor of 40 × 40 with 64 blocks; random numbers are
+    the same in every run."""
     numbers = random.Random(7)
     bpy.ops.mesh.primitive_plane_add(size=40)
     place(bpy.context.object, "Floor", (0.6, 0.6, 0.6))
@@ -166,11 +168,11 @@ def lamps_1000():
     lamps(1000)
 
 
-STEP = (0.5, 0, 0)  # from frame to frame
+STEP = (0.5, 0, 0)  # movement from frame to frame
 
 
 def let_move(thing):
-    """Moves the object from frame 0 to frame 2, at even speed, through its place at frame 1."""
+    """Animates the object from frame 0 to frame 2 at constant speed, with its own place at frame 1."""
     place = thing.location.copy()
     for frame, share in ((0, -1), (2, 1)):
         thing.location = place + share * Vector(STEP)

@@ -4,9 +4,10 @@ Blender with a window, by tests/blender/run.sh:
 
     WINDOW=1 run.sh ../../bench/cycles/viewport.py ADDON.zip PENUMBRA WORK SCENE.blend SECONDS REST RUNS
 
-Writes WORK/out/drags.json. A picture is what an engine leaves in the view's framebuffer when Blender has it draw; of it a crop full
-of penumbra is read back. All moves end where they began, so there is one judge: Cycles with many samples, under two seeds. An
-engine's picture is watched until it is exact or its error is below the least of ERRORS, for REST seconds at most.
+Writes WORK/out/drags.json. A picture is the content of the view's framebuffer after an engine has drawn; a crop full of
+penumbra is read from it. All moves end where they began, so that one judge is enough: Cycles with many samples, under
+two seeds. After the moves an engine's pictures are watched until one is exact or its error is below the least of
+ERRORS, for at most REST seconds.
 """
 
 import json
@@ -47,7 +48,7 @@ def processor():
 
 
 class Watch:
-    """Notes each new picture: when it was drawn, the processor seconds until then, and its crop."""
+    """Notes each new picture: its time, the processor seconds until then, and its crop."""
 
     def __init__(self, *engines):
         self.notes, self.corner = [], None  # the crop's left column and lowest row
@@ -73,7 +74,7 @@ class Test:
 
     def __init__(self):
         inside.fresh(lambda: bpy.ops.wm.open_mainfile(filepath=SCENE, load_ui=False))
-        self.scene = bpy.context.scene  # the file's
+        self.scene = bpy.context.scene  # of the opened file
         self.scene.render.film_transparent = True
         cycles = self.scene.cycles
         cycles.max_bounces, cycles.light_sampling_threshold, cycles.pixel_filter_type, cycles.filter_width = 0, 0, "GAUSSIAN", 0.01
@@ -82,12 +83,12 @@ class Test:
         self.watch, self.drags = Watch(cycles_addon.CyclesRender, PenumbraEngine), []
         self.lamp = next(thing for thing in self.scene.objects if thing.type == "LIGHT")
         self.lamp_x = self.lamp.location.x
-        self.judge = self.judged = None  # Cycles' converged crop, and which of its pixels count
-        self.noise = 0.0  # the judge's own
+        self.judge = self.judged = None  # Cycles' converged crop, and a mask of its pixels that are compared
+        self.noise = 0.0  # RMS error of the judge itself
 
     def begin(self, engine):
-        """Shows the scene by this engine, from the beginning."""
-        yield 0.5  # the file's windows come
+        """Shows the scene with this engine in a new render."""
+        yield 0.5  # until the file's windows are open
         self.area, self.region, self.space = window.view_3d()
         window.clear(self.space)
         self.space.shading.type = "SOLID"
@@ -112,14 +113,15 @@ class Test:
         return sqrt(max(squares - self.noise ** 2, 0)) / float(self.judge[self.judged].mean())
 
     def is_done(self, engine, count):
-        """Returns whether no later picture is waited for; `count`: of those that came before the last move."""
+        """Returns whether no further picture is needed. `count`: number of pictures before the last move."""
         notes = self.watch.notes
         if engine == "PENUMBRA":
-            return len(notes) > count and window.shown().is_final()  # since it was drawn
+            return len(notes) > count and window.shown().is_final()  # drawn after the last move
         return len(notes) > count and self.error(notes[-1][2]) < min(ERRORS)
 
     def drag(self, engine, what, move):
-        """Moves it some sixty times a second, in the end to where it began; then waits."""
+        """Calls `move` about sixty times a second, the last time with the initial state; then waits for the final
+        picture."""
         notes, began, start = self.watch.notes, time.monotonic(), processor()
         notes.clear()
         while (now := time.monotonic() - began) < SECONDS:
@@ -136,7 +138,7 @@ class Test:
                                                                                                  for when, until, crop in notes[count:]]})
 
     def see_penumbra(self):
-        """Chooses the crop, and of it the pixels to judge: those whose neighbours show about the same plane."""
+        """Chooses the crop, and its pixels to be compared: those whose neighbours show about the same plane."""
         from penumbra import exr, viewport
         yield from window.final("Penumbra shows nothing")
         view = window.shown()
@@ -153,7 +155,7 @@ class Test:
         self.judged = (step < 0.3)[top:top + CROP[1], left:left + CROP[0]]
 
     def see_judge(self):
-        """Cycles' converged crop, by a border around it."""
+        """Renders Cycles' converged crop, with a render border around it."""
         space, (left, bottom) = self.space, self.watch.corner
         space.render_border_min_x, space.render_border_max_x = (left - 2) / self.region.width, (left + CROP[0] + 2) / self.region.width
         space.render_border_min_y, space.render_border_max_y = (
@@ -161,9 +163,9 @@ class Test:
         space.use_render_border, cycles, seen = True, self.scene.cycles, []
         for seed in (11, 12):
             cycles.use_preview_adaptive_sampling, cycles.preview_samples, cycles.seed = False, JUDGE_SAMPLES, seed
-            yield from self.begin("CYCLES")  # a new session: a running one does not notice these settings
+            yield from self.begin("CYCLES")  # a new render: a running one ignores changes of these settings
             before = -10.0
-            while time.process_time() - before > 0.5:  # Cycles has taken its last sample
+            while time.process_time() - before > 0.5:  # until Cycles has taken its last sample
                 before = time.process_time()
                 yield 6
             seen.append(self.watch.notes[-1][2].astype(float))

@@ -21,7 +21,7 @@ def register():
     bpy.utils.register_class(bake.PENUMBRA_OT_bake)
     panels.register()
     for handlers in (bpy.app.handlers.render_complete, bpy.app.handlers.render_cancel):
-        handlers.append(bpy.app.handlers.persistent(serving.forget))  # also after opening another file
+        handlers.append(bpy.app.handlers.persistent(serving.forget))  # kept when another file is opened
 
 
 def unregister():

@@ -12,7 +12,8 @@ _failed = None  # the first frame that failed
 
 
 def asked_for_frames(arguments):
-    """Returns whether Blender's command line lists the frames to render. Otherwise a script asks for them and gets an exception."""
+    """Returns whether Blender's command line lists the frames to render. If not, a script requests them and gets an
+    exception."""
     own = arguments[:arguments.index("--")] if "--" in arguments else arguments
     return any(one in own for one in ("-f", "--render-frame", "-a", "--render-anim"))
 

@@ -13,7 +13,7 @@ from .export import SceneWriter
 
 # Name of the object's mesh in the exchange file: longer than any that Blender allows, so that no other has it.
 _NAME = "baked" + 256 * "_"
-_OF = "penumbra_bake_of"  # property of an image that a bake made: the object's name
+_OF = "penumbra_bake_of"  # custom property of a baked image: the object's name
 _LINEAR = ("Linear Rec.709", "Linear")
 
 
@@ -33,7 +33,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
         except (ValueError, OSError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        except Exception as error:  # errors of the add-on
+        except Exception as error:  # an error in the add-on itself
             traceback.print_exc()
             self.report({"ERROR"}, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
             return {"CANCELLED"}
@@ -68,7 +68,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
 
 
 class Baked:
-    """The object to bake, in SceneWriter's form."""
+    """The object to bake, as SceneWriter needs it."""
     name = _NAME
 
     def __init__(self, thing):

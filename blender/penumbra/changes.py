@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Changes that a dependency graph reports: of a 3D view from update to update, of a shutter from moment to moment."""
+"""Changes that a dependency graph reports: between updates of a 3D view, or between moments of an open shutter."""
 
 import bpy
 
@@ -9,11 +9,13 @@ def key_of(block):
 
 
 class Changes:
-    """Changes by kind and name, apart from positions. `all`: it is not known which objects look different."""
+    """Changed data blocks by kind and name, without changes of positions. `all`: the changed objects are unknown, so
+    all count as changed."""
 
     def __init__(self, by_time=False):
-        """`by_time`: nothing but the frame changes. Then an object looks different by its geometry, its materials and its data
-        alone, of which Blender reports each; of what is keyed it reports everything."""
+        """`by_time`: only the time changes. An object's appearance then changes only through its geometry, materials
+        and data, of which Blender reports each. An update of the object itself does not count: for keyed objects
+        Blender reports all kinds."""
         self.blocks, self.all, self._by_time = set(), False, by_time
 
     def note(self, depsgraph):
@@ -23,7 +25,7 @@ class Changes:
             any_at_all, block = True, update.id
             if isinstance(block, (bpy.types.Image, bpy.types.Texture)) or \
                     (isinstance(block, bpy.types.NodeTree) and not block.is_embedded_data):
-                self.all = True  # the objects with these materials are unknown here
+                self.all = True  # which objects use these is unknown here
             elif not isinstance(block, bpy.types.Object) or update.is_updated_geometry or \
                     (update.is_updated_shading and not self._by_time):
                 self.blocks.add(key_of(block))

@@ -30,7 +30,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
             self._render(depsgraph)
         except (Refused, ValueError, OSError) as error:
             self._fail(depsgraph, str(error))
-        except Exception as error:  # errors of the add-on
+        except Exception as error:  # an error in the add-on itself
             traceback.print_exc()
             self._fail(depsgraph, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
 
@@ -71,8 +71,9 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
                 self._show(depsgraph, exr.read(file.read()), workspace.folder, writer.background)
 
     def _write_moments(self, depsgraph, whole, writer, region, lost):
-        """Writes the scene at each moment of the open shutter. Returns the files, none if nothing moves; None: cancelled. `whole`:
-        the file of the frame's own time, written by `writer`; `lost`: what was said of it."""
+        """Writes the scene at each moment of the open shutter. Returns the files, an empty list if nothing moves, or
+        None if cancelled. `whole`: the file of the frame's own time, written by `writer`; `lost`: losses already
+        reported for it."""
         scene = depsgraph.scene
         times, own = motion.moments_of(scene), (scene.frame_current, scene.frame_subframe)
         if not times:
@@ -117,7 +118,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
         wanted = {one.name for one in result.layers[0].passes}
         content = {f"{layer}.{name}": values for name, values in names.channels(picture).items()
                    if name.rpartition(".")[0] in wanted}
-        for name in wanted:  # a matte of several view samples a pixel, where one turned out to be enough
+        for name in wanted:  # passes for several view samples, if the picture has only one
             if name.startswith("Crypto"):
                 for letter in "RGBA":
                     content.setdefault(f"{layer}.{name}.{letter}", numpy.zeros((picture.height, picture.width), numpy.float32))
@@ -133,7 +134,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
                 whole.stamp_data_add_field(name, f"{layer}.{text}" if name.endswith("/name") else text)
 
     def update_render_passes(self, scene=None, renderlayer=None):
-        """Registers the passes that the compositor's node has sockets for. Raises nothing, as render."""
+        """Registers the passes for which the compositor's node gets sockets. Like render, raises nothing."""
         try:
             self._register_passes(scene, renderlayer)
         except Exception:

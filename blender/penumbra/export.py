@@ -30,17 +30,17 @@ class SceneWriter:
         self.background = (0.0, 0.0, 0.0)  # colour to be composited behind everything
         self._meshes, self._materials, self._looks, self._images = {}, {}, {}, {}
         self._baked, self._shines = baked, False
-        self._named = {}  # meshes by their object's name, for other moments; None: several of one name
+        self._named = {}  # meshes by their object's name, for other moments; None: several meshes share the name
         self._before = self._changes = None  # the writer of the frame's own time, and changes since
         self._world_picture = sky.PICTURE
         self._seen_by = self.scene.camera.original if self.scene.camera is not None else None
-        self._balls, self._placed = [], []  # lamps of some size, and surfaces in the world, for tests of their
-                                            # distances
+        self._balls, self._placed = [], []  # lamps with a radius, and surfaces in world space, for tests of
+                                            # their distances
 
     def at_moment(self, changes, losses, beside, world_picture):
-        """Returns a writer of the scene at another moment, whose meshes and world are this one's where nothing has changed since
-        (changes.Changes). `beside`: name of the file that has the binary data of these meshes (Glb.without_nodes);
-        `world_picture`: name of the file of another picture of the world."""
+        """Returns a writer of the scene at another moment, which reuses this writer's meshes and world if they have not
+        changed since (changes.Changes). `beside`: name of the file with the binary data of these meshes
+        (Glb.without_nodes); `world_picture`: file name of the world's picture, if that has changed."""
         other = SceneWriter(self.depsgraph, losses, self.shading_normals)
         other._world_picture, other._seen_by = world_picture, self._seen_by  # markers may change the scene's camera
         if not changes.all:
@@ -49,7 +49,7 @@ class SceneWriter:
         return other
 
     def write(self, path, region):
-        """`region`: pixels to render (frames.py); None: there is no picture."""
+        """Writes the file. `region`: pixels to render (frames.py); None: no picture is rendered."""
         encoded = self.encoded(os.path.dirname(path), region)
         with open(path, "wb") as file:
             file.write(encoded)
@@ -57,7 +57,7 @@ class SceneWriter:
     def encoded(self, folder, region):
         """Returns the file's bytes. `folder`: where it will be, for a picture of the world; `region`: as of write()."""
         for instance in self.depsgraph.object_instances:
-            # A dependency graph of a view has what is hidden in renders alone.
+            # A view's dependency graph also contains objects that are hidden only in renders.
             hidden = instance.object.hide_render or (instance.is_instance and instance.parent.hide_render)
             if instance.show_self and not (region is None and hidden):
                 self._object(instance)
@@ -70,7 +70,7 @@ class SceneWriter:
             raise ValueError("there is no surface in the scene that is shown in renders")
         if region is not None:
             self._camera(region)
-        else:  # without effect
+        else:  # a camera without effect
             self.glb.camera("None", numpy.eye(4).tolist(), 1, (0, 0), half_angle=1)
         lamps.check_balls(self._balls, self._placed, self.losses)
         return self.glb.encoded()
@@ -131,7 +131,7 @@ class SceneWriter:
                 self._meshes[key] = self._primitives(thing, data, is_baked) if data is not None else None
                 thing.to_mesh_clear()
         mesh = self._meshes[key]
-        # Instances that geometry nodes make have the name of their maker.
+        # Instances made by geometry nodes have the name of the object with the nodes: a name may have several meshes.
         self._named[name] = mesh if self._named.setdefault(name, mesh) is mesh else None
         return mesh
 
@@ -259,7 +259,7 @@ def encoded_image(image, look):
 
 
 def numbered(vertices, count):
-    """Returns which of `count` vertices are used, in their order, and the number of each of `vertices` among these."""
+    """Returns the used vertices (of `count`), ascending, and the index of each of `vertices` in this list."""
     is_used = numpy.zeros(count, bool)
     is_used[vertices] = True
     used = numpy.flatnonzero(is_used)
@@ -272,7 +272,7 @@ def shared(vertices, rows):
     """Returns the distinct corner data, and each corner's index into them. `vertices`: the mesh's vertex of each corner."""
     first = numpy.zeros(int(vertices.max()) + 1, numpy.int64)
     first[vertices[::-1]] = numpy.arange(len(vertices))[::-1]
-    # fast path for the usual case: a vertex has one normal, one position in a picture
+    # fast path for the usual case: all corners of a vertex have the same data
     if numpy.array_equal(rows, rows[first[vertices]]):
         used, indices = numbered(vertices, len(first))
         return rows[first[used]], indices
@@ -289,13 +289,13 @@ class Corners:
         count = len(data.loop_triangles)
         self.vertices = numpy.empty(3 * count, numpy.int32)
         data.loop_triangles.foreach_get("vertices", self.vertices)
-        self.loops = None  # read when asked for: Blender takes as long for them as for all else
+        self.loops = None  # read only when needed: Blender needs as much time for them as for everything else
         self.positions = numpy.empty(3 * len(data.vertices), numpy.float32)
         data.vertices.foreach_get("co", self.positions)
         self.positions = self.positions.reshape(-1, 3)
         self.smooth = numpy.zeros(count, bool)
         if shading_normals:
-            faces = numpy.zeros(len(data.polygons), bool)  # fewer than triangles, and mostly all alike
+            faces = numpy.zeros(len(data.polygons), bool)  # read first: fewer than triangles, and usually all equal
             data.polygons.foreach_get("use_smooth", faces)
             if faces.all():
                 self.smooth[:] = True
@@ -343,7 +343,7 @@ class Corners:
         if columns:
             columns.insert(0, self.positions[vertices])
             rows, indices = shared(vertices, numpy.hstack(columns))
-        else:  # nothing differs from corner to corner
+        else:  # all corners of a vertex have the same data
             used, indices = numbered(vertices, len(self.positions))
             rows = self.positions[used]
             columns = [rows]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Reads the pictures that the program writes: OpenEXR, scan lines, ZIP (16 lines a block), float and unsigned channels.
-Writes such, without compression, which is how many pixels get into Blender at once.
+Also writes such files, without compression: Blender can load all pixels of a file at once.
 
-Knows nothing of Blender. Blender's own Python cannot read OpenEXR layers by name.
+Independent of Blender. Blender's own Python cannot read OpenEXR layers by name.
 """
 
 import struct
@@ -63,7 +63,8 @@ def _unzip(block, size):
 
 
 def read(data):
-    """Returns the Picture in a file's bytes. Raises ValueError if they are no OpenEXR file, or of a form that is not read here."""
+    """Returns the Picture in a file's bytes. Raises ValueError if they are not an OpenEXR file, or of an unsupported
+    form."""
     entries, table = _header(data)
     left, top, right, bottom = struct.unpack("<4i", entries["dataWindow"][1])
     width, height = right - left + 1, bottom - top + 1

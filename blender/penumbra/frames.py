@@ -10,7 +10,7 @@ from . import materials, passes, sky
 
 @dataclass
 class Region:
-    """Pixels of a whole picture: a rectangle whose lower left corner is at (left, bottom)."""
+    """A rectangle of pixels in a whole picture; its lower left corner is at (left, bottom)."""
     whole: tuple
     size: tuple
     left: int = 0
@@ -31,7 +31,7 @@ def region_of(render, width, height):
         raise ValueError("stereoscopy is on (Output, Stereoscopy); Penumbra renders one view")
     if not render.use_border:
         return Region((width, height), (width, height))
-    # Rounding is Blender's, in single precision.
+    # Rounds as Blender does, in single precision.
     left, right = (int(numpy.float32(x) * numpy.float32(width)) for x in (render.border_min_x, render.border_max_x))
     bottom, top = (int(numpy.float32(y) * numpy.float32(height)) for y in (render.border_min_y, render.border_max_y))
     if right <= left or top <= bottom:

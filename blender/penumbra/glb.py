@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Writes the scene that the program reads: binary glTF 2.0, with extras for what glTF has no word for (docs/blender.md).
+"""Writes the scene that the program reads: binary glTF 2.0, with extras for data that glTF does not define
+(docs/blender.md).
 
-Knows nothing of Blender. Matrices are sequences of four rows, as Blender's are; lengths and axes are Blender's, and one
+Independent of Blender. Matrices are sequences of four rows, as Blender's are; lengths and axes are Blender's, and one
 node above all others turns Z up into Y up, exactly.
 """
 
@@ -24,7 +25,7 @@ class Glb:
 
     def __init__(self):
         self._binary, self.domes = bytearray(), []
-        self._beside = None  # name and length of the file that holds the binary data of another's meshes and images
+        self._beside = None  # name and length of a file with the binary data of meshes and images (without_nodes)
         self._extensions = set()
         self.has_lamps = False
         self._document = {
@@ -46,7 +47,8 @@ class Glb:
         return self._add("bufferViews", view)
 
     def accessor(self, data, shape, component=FLOAT, bounds=None):
-        """`data`: bytes, little-endian; `shape`: "SCALAR" to "VEC4"; `bounds`: (least, greatest), of positions."""
+        """Adds an accessor. `data`: bytes, little-endian; `shape`: "SCALAR" to "VEC4"; `bounds`: least and greatest
+        position."""
         entry = {
             "bufferView": self._view(data),
             "componentType": component,
@@ -61,14 +63,14 @@ class Glb:
         return self._add("images", {"name": name, "bufferView": self._view(data), "mimeType": mime})
 
     def texture(self, image, wrap=10497, nearest=False):
-        """Adds a texture. `wrap`: glTF's number."""
+        """Adds a texture. `wrap`: glTF's number of the wrapping mode."""
         filtering = 9728 if nearest else 9729
         sampler = self._add("samplers", {"wrapS": wrap, "wrapT": wrap, "magFilter": filtering})
         return self._add("textures", {"source": image, "sampler": sampler})
 
     def material(self, name, color, radiance=(0, 0, 0), alpha=1.0, cutoff=None, texture=None, texture_alpha=False):
-        """Adds a material. It emits to both sides, as Blender's materials do. `cutoff`: holes below it; None: alpha
-        dims. `texture_alpha`: the texture's counts."""
+        """Adds a material. It emits to both sides, as Blender's materials do. `cutoff`: there are holes where alpha
+        is below; None: alpha dims light. `texture_alpha`: the texture's alpha is used."""
         surface = {"baseColorFactor": [*color, alpha], "metallicFactor": 0, "roughnessFactor": 1}
         if texture is not None:
             surface["baseColorTexture"] = {"index": texture}
@@ -89,7 +91,7 @@ class Glb:
         return self._add("meshes", {"name": name, "primitives": primitives})
 
     def node(self, name, matrix, extras=None, **what):
-        """`what`: mesh, camera."""
+        """Adds a node. `what`: its mesh or camera."""
         entry = {"name": name, "matrix": by_columns(matrix), **what}
         if extras:
             entry["extras"] = extras
@@ -116,7 +118,7 @@ class Glb:
         self.node(name, matrix, camera=self._add("cameras", {"name": name, **lens}))
 
     def lamp(self, name, matrix, kind, intensity, color, sizes, casts_shadow=True, cone=None):
-        """A sun ("directional"), a sphere ("point") or one with a cone ("spot"; inner and outer half angle in
+        """Adds a sun ("directional"), a sphere ("point") or a sphere with a cone ("spot"; inner and outer half angle in
         radians). `sizes`: angle (degrees) or radius."""
         self.has_lamps = True
         lamp = {"name": name, "type": kind, "intensity": intensity, "color": list(color), "extras": dict(sizes)}
@@ -136,7 +138,7 @@ class Glb:
 
     def dome(self, name, matrix, radiance, image=None, visible=False, sampled=False):
         """Adds the sky: +Y of the matrix is up, -Z the direction of the picture's middle column; the picture is a
-        separate file. `sampled`: counted in light samples, not as exact areas."""
+        separate file. `sampled`: evaluated by light samples, not as exact areas."""
         self.has_lamps = True
         self.domes.append((name, matrix, radiance, image, visible, sampled))
         dome = {"radiance": list(radiance), "visible": visible, "sampled": sampled}
@@ -145,8 +147,9 @@ class Glb:
         self.node(name, matrix, {"dome": dome})
 
     def without_nodes(self, beside):
-        """Returns a file with all meshes, materials and images of this one, under their numbers, and without nodes: another
-        moment of the scene. Their binary data stay what they are in a file named `beside`, to be filled by `binary`."""
+        """Returns a file for another moment of the scene, without nodes, with all meshes, materials and images of this
+        one under the same numbers. Their binary data are in a separate file named `beside`, which contains the result
+        of `binary`."""
         other = Glb()
         other._extensions, other._beside = set(self._extensions), (beside, len(self._binary))
         for kind in ("accessors", "meshes", "materials", "images", "samplers", "textures"):
@@ -159,7 +162,7 @@ class Glb:
         return bytes(self._binary)
 
     def placed(self):
-        """Returns what is where: all but meshes and materials, which nodes refer to by numbers."""
+        """Returns nodes, cameras and lights as text, to compare moments; nodes refer to meshes by numbers."""
         return json.dumps([self._document.get(kind) for kind in ("nodes", "cameras", "extensions")])
 
     def encoded(self):
@@ -179,7 +182,7 @@ class Glb:
         chunks = [struct.pack("<II", len(text), 0x4E4F534A), text]
         if size:
             chunks += [struct.pack("<II", size, 0x004E4942), self._binary, filling]
-        # Joined at once: each further concatenation would copy all of a dense mesh.
+        # All chunks are joined at once: each further concatenation would copy a dense mesh again.
         return b"".join([struct.pack("<III", 0x46546C67, 2, 12 + sum(map(len, chunks))), *chunks])
 
 
@@ -188,8 +191,8 @@ class OfThings(Glb):
 
     def __init__(self):
         super().__init__()
-        self.thing = ""  # of the following nodes
-        self._number = 0  # of the last node: equal names are told apart by the reader of all things alone
+        self.thing = ""  # name of the object that the following nodes belong to
+        self._number = 0  # of the last node; makes names unique: only the reader of all things renames equal ones
         self.things, self.shadeless = set(), set()  # things with nodes; things whose lamps cast no shadows
 
     def node(self, name, matrix, extras=None, **what):

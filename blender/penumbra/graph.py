@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Node trees: what feeds a socket, through reroutes, muted nodes and groups, and what numbers and colours come to that depend on
-nothing, or on one image. Knows nodes by their names and values alone, not bpy."""
+"""Node trees: finds the source of a socket through reroutes, muted nodes and groups, and evaluates numbers and colours
+that are constant or depend on one image. Uses only names and values of nodes, not bpy."""
 
 import math
 
@@ -32,13 +32,14 @@ def is_moved(mapping):
 
 
 class At:
-    """A socket in its tree. `groups`: the group nodes that the tree is inside of, outermost first."""
+    """A socket in its tree. `groups`: the group nodes that contain the tree, outermost first."""
 
     def __init__(self, socket, groups=()):
         self.socket, self.groups = socket, groups
 
     def source(self):
-        """Returns the source of the socket as (node, output, groups); None if a socket's own value counts: that of `end`."""
+        """Returns the source of the socket as (node, output, groups). If there is none, returns None and sets `end` to
+        the socket whose own value is used."""
         at = self
         while True:
             if not at.socket.is_linked:
@@ -79,7 +80,8 @@ def _like(sockets, socket, node):
 
 
 class Value:
-    """Colour of three channels: `factor` times the image's (linear, or the computed `texels`) and the attribute's."""
+    """Colour of three channels: `factor` times the image's colour (linear; or `pixels`, if computed) and the
+    attribute's."""
 
     def __init__(self, factor=(1.0, 1.0, 1.0), image=None, attribute=None, pixels=None):
         self.factor = numpy.broadcast_to(numpy.asarray(factor, numpy.float64), (3,))
@@ -106,7 +108,7 @@ class Value:
 
 
 class ImageUse:
-    """An image node, and the groups that it is in."""
+    """An image node, and the groups that contain it."""
 
     def __init__(self, node, groups):
         self.node, self.groups = node, groups

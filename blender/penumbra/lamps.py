@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's lamps and cameras in the exchange file's units. Knows their names and values alone, not bpy.
+"""Blender's lamps and cameras in the exchange file's units. Uses only their names and values, not bpy.
 
 Brightness is that of Cycles, measured (tests/blender/): a point or spot lamp of P watts has P / 4π candela, an area lamp
 the radiance P / 4 A, a sun's strength is irradiance.
@@ -11,7 +11,7 @@ from . import graph, space
 
 # Wider suns are refused: above this angle, for a surface with the sun 45 degrees above, they are 2 % and more off.
 _WIDEST_SUN, _WIDE_SUN = radians(120), radians(90)
-# Largest difference in brightness between a lamp's ball and Cycles' disk without a message.
+# Largest difference in brightness between a lamp's ball and Cycles' disk that is not reported.
 _UNSAID = 0.02
 
 
@@ -56,7 +56,8 @@ def size_of(lamp):
 
 
 def radiance_of_area(power, shape, size, sides):
-    """`sides`: the matrix's first two columns, which need not be at right angles."""
+    """Returns the radiance P / 4 A of an area lamp. `sides`: the matrix's first two columns, which need not be at right
+    angles."""
     (a, b, c), (d, e, f) = sides
     area = size[0] * size[1] * sqrt((b * f - c * e) ** 2 + (c * d - a * f) ** 2 + (a * e - b * d) ** 2)
     area *= pi / 4 if shape == "ellipse" else 1
@@ -92,16 +93,17 @@ def is_linked(thing):
 
 
 class Ball:
-    """A lamp with a radius, which is a ball here. `is_disk`: in Cycles the lamp is a disk that faces each receiver, which at
-    distance d gets 1 + r² / d² times less; for spot lamps the program computes that (visibility::spot_share)."""
+    """A lamp with a radius, which is a ball here. `is_disk`: in Cycles the lamp is a disk that faces each receiver; at
+    distance d the receiver gets 1 + r² / d² times less light. For spot lamps the program computes that
+    (visibility::spot_share)."""
 
     def __init__(self, name, center, radius, is_disk):
         self.name, self.center, self.radius, self.is_disk = name, center, radius, is_disk
 
 
 def check_balls(balls, surfaces, losses):
-    """Refuses balls that reach one of the `surfaces` (space.Placed), which would be black inside; mentions balls that a
-    surface is so near to that it is brighter than in Cycles."""
+    """Refuses balls that reach one of the `surfaces` (space.Placed), since surfaces inside would be black; mentions
+    balls so near to a surface that it is brighter than in Cycles."""
     surfaces = space.Surfaces(surfaces)
     for ball in balls:
         surface, nearest = surfaces.nearest_to(ball.center, 8 * ball.radius)

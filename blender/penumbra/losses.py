@@ -7,8 +7,8 @@ _NUMBER = re.compile(r"[0-9.]+(e[-+]?[0-9]+)?")
 
 
 class Losses:
-    """`refused`: it would change a shadow, or take one away. `mentioned`: it changes how a surface looks, or is left out
-    by design. Both: what, to the names that it is about."""
+    """`refused`: losses that would change or remove a shadow. `mentioned`: losses that change how a surface looks, or
+    that are by design. Both map the text of a loss to the names that it concerns."""
 
     def __init__(self):
         self.refused, self.mentioned = {}, {}
@@ -20,7 +20,8 @@ class Losses:
         self.mentioned.setdefault(what, {})[name] = None
 
     def take_news(self, other):
-        """Adds what `other` has and this has not, numbers in the texts apart: of one scene a little later. Returns that alone."""
+        """Adds the losses of `other` that are missing here, and returns only these. Texts that differ only in numbers
+        are the same: those of one scene at another time."""
         news = Losses()
         for mine, theirs, new in ((self.refused, other.refused, news.refused), (self.mentioned, other.mentioned, news.mentioned)):
             known = {(_NUMBER.sub("", what), name) for what, names in mine.items() for name in names}
@@ -33,7 +34,7 @@ class Losses:
 
 
 def together(several):
-    """Returns the losses of all in one."""
+    """Returns the union of several Losses."""
     whole = Losses()
     for one in several:
         for into, what in ((whole.refused, one.refused), (whole.mentioned, one.mentioned)):

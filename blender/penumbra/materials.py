@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Converts a material's nodes to a surface that reflects diffusely, emits, and transmits light.
 
-Knows nodes by their names and values alone, not bpy.
+Uses only names and values of nodes, not bpy.
 """
 
 from dataclasses import dataclass, field
@@ -17,9 +17,9 @@ class Look:
     color: tuple = (0.8, 0.8, 0.8)
     radiance: tuple = (0.0, 0.0, 0.0)
     alpha: float = 1.0
-    image: object = None        # multiplies the colour
-    image_alpha: bool = False   # and its alpha multiplies the alpha
-    pixels: object = None       # linear, in place of the image's own: the result of nodes
+    image: object = None        # its colour multiplies `color`
+    image_alpha: bool = False   # whether its alpha multiplies `alpha`
+    pixels: object = None       # linear texels computed by nodes, in place of the image's
     uv_map: str = ""            # UV map of the image; "": the active one
     placing: tuple = None       # transform of the UV map: two rows of three numbers; None: identity
     interpolation: str = "Linear"
@@ -48,7 +48,7 @@ _GREY = (0.8, 0.8, 0.8)  # in place of an unknown colour, if left out
 
 
 def may_shine(material):
-    """Returns whether the material has a node that emits light. Called before a render, for names of passes."""
+    """Returns whether the material has a node that emits light. Called before a render, to name the passes."""
     if not material.use_nodes or material.node_tree is None:
         return False
     for node in material.node_tree.nodes:

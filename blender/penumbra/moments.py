@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exchange files of a frame's moments, beside that of the frame's own time."""
+"""Exchange files of a frame's moments, in addition to that of the frame's own time."""
 
 import os
 
@@ -10,7 +10,7 @@ _STILL = "still.bin"
 
 class Moments:
     """Files of a frame's moments, one after the other. Meshes and pictures that have not changed since the frame's own time are
-    in one file beside all of these, so that a moment costs what changes."""
+    in one further file that all share, so that each moment only costs what changes."""
 
     def __init__(self, whole, writer, region):
         """`whole`: the file of the frame's own time, written by `writer` (a SceneWriter); `region`: pixels to render (frames.py)."""
@@ -19,7 +19,7 @@ class Moments:
         self._files, self._last = [], None  # of all moments; bytes of the last file written
 
     def add(self, depsgraph, lost):
-        """Adds the moment that Blender has just evaluated, and what it lacks to `lost`. Moments that are alike share a file."""
+        """Adds the moment that Blender has just evaluated, and its losses to `lost`. Equal moments share a file."""
         before = self._files[-1] if self._files else self._whole
         self._files.append(before)
         if not self._changes.note(depsgraph):
@@ -28,7 +28,7 @@ class Moments:
         writer = self._writer.at_moment(self._changes, lost, _STILL, f"world-{number}.exr")
         encoded = writer.encoded(self._folder, self._region)
         if not self._changes.all and writer.glb.placed() == self._writer.glb.placed():
-            self._files[-1] = self._whole  # the changes came to nothing
+            self._files[-1] = self._whole  # nothing visible has changed
         elif before == self._whole or encoded != self._last:
             self._files[-1], self._last = os.path.join(self._folder, f"moment-{number}.glb"), encoded
             with open(self._files[-1], "wb") as file:
@@ -42,5 +42,5 @@ class Moments:
                 file.write(self._writer.glb.binary())
 
     def files(self):
-        """Returns the files of all moments; none if each is like the frame's own time."""
+        """Returns the files of all moments; an empty list if all equal the frame's own time."""
         return self._files if any(file != self._whole for file in self._files) else []

@@ -9,8 +9,8 @@ START, CENTER, END = "START", "CENTER", "END"
 
 
 def position_owner(scene):
-    """Returns the settings that say whether the shutter opens, is half open or closes at the frame: Blender's own since 4.2,
-    before that Cycles', and EEVEE's where there is no Cycles."""
+    """Returns the settings that determine whether the frame is at the start, middle or end of the shutter's time:
+    Blender's own since 4.2, before that Cycles', or EEVEE's if there is no Cycles."""
     for owner in (scene.render, getattr(scene, "cycles", None), getattr(scene, "eevee", None)):
         if hasattr(owner, "motion_blur_position"):
             return owner
@@ -22,7 +22,7 @@ def is_on(scene):
 
 
 def samples_of(scene):
-    """Returns the number of moments of a frame; 1: the frame's own alone."""
+    """Returns the number of moments of a frame; 1: only the frame's own time."""
     return scene.penumbra.motion_samples if is_on(scene) else 1
 
 
@@ -39,8 +39,8 @@ def moments_of(scene):
 
 
 def moments(frame, shutter, position, count, heights):
-    """Returns the middle of each of `count` parts of the shutter's time that expose alike. `shutter`: frames; `heights`: how far
-    the shutter is open, at even distances from its opening to its closing."""
+    """Returns the middles of `count` parts of the shutter's time with equal exposure. `shutter`: length in frames;
+    `heights`: how far the shutter is open, at equal time steps from its opening to its closing."""
     exposed = numpy.concatenate([[0], numpy.cumsum(numpy.maximum(heights, 0)[1:] + numpy.maximum(heights, 0)[:-1])])
     shares = (numpy.arange(count) + 0.5) / count
     if exposed[-1] > 0:
@@ -50,6 +50,6 @@ def moments(frame, shutter, position, count, heights):
 
 
 def whole_and_rest(time):
-    """Returns a time as Blender takes it: a frame, and its part of the next from 0 to below 1."""
+    """Returns a time in Blender's form: a whole frame, and the fraction from 0 to below 1."""
     frame = math.floor(time)
     return frame, time - frame

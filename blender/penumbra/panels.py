@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shows settings: panels of Blender's that say what Penumbra reads, and its own where Blender has none for engines
-of add-ons."""
+"""Shows settings: Blender's panels with properties that Penumbra reads, and the add-on's own panels where Blender has
+none for engines of add-ons."""
 
 import bpy
 
 from . import motion, program
 
 ENGINE = "PENUMBRA"
-# Panels of Blender for unsupported features, or replaced by one of the add-on's.
+# Blender's panels that are not shown: for unsupported features, or replaced by a panel of the add-on.
 _NOT_OURS = {
     "DATA_PT_light", "DATA_PT_area", "DATA_PT_spot", "DATA_PT_falloff_curve", "DATA_PT_preview", "DATA_PT_lightprobe", "DATA_PT_context_lightprobe",
     "DATA_PT_lightprobe_parallax", "DATA_PT_lightprobe_display",
@@ -131,7 +131,7 @@ class PENUMBRA_PT_light(_Panel, bpy.types.Panel):
         column = layout.column()
         column.prop(light, "color")
         column.prop(light, "energy")
-        for name in ("exposure", "normalize", "use_soft_falloff"):  # in newer versions of Blender
+        for name in ("exposure", "normalize", "use_soft_falloff"):  # exist only in newer versions of Blender
             if hasattr(light, name):
                 column.prop(light, name)
         column.separator()

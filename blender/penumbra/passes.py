@@ -6,7 +6,7 @@ import json
 
 import numpy
 
-_CHANNELS = {  # Channels of passes known to Blender: the pictures' own names, and the conversion of their values
+_CHANNELS = {  # Blender's passes, and the picture's channels for them; "-": negated
     "Combined.R": "R", "Combined.G": "G", "Combined.B": "B", "Combined.A": "A", "Depth.Z": "Z",
     "Position.X": "P.X", "Position.Y": "-P.Z", "Position.Z": "P.Y",
     "Normal.X": "N.X", "Normal.Y": "-N.Z", "Normal.Z": "N.Y",
@@ -22,14 +22,14 @@ _LONGEST_LAYER = 44  # bytes of UTF-8, as truncated by the program
 
 
 def layer_of(name):
-    """Returns the layer name of a light; a second light of the same name gets a different one."""
+    """Returns the layer name that the program gives a light, unless an earlier light already has this name."""
     plain = "".join("_" if letter in "./" or ord(letter) < 0x20 or ord(letter) == 0x7F else letter for letter in name)
     return plain.encode()[:_LONGEST_LAYER].decode("utf-8", "ignore")
 
 
 def matte_groups(name, view_samples):
-    """Returns the names of a matte's passes: with one view sample a pixel, at one moment, there is one object a pixel, with more
-    up to six."""
+    """Returns the names of a matte's passes. With one view sample a pixel, at one moment, there is one object per
+    pixel; with several, up to six."""
     return [f"{name}{group:02}" for group in range(1 if int(view_samples) == 1 else 3)]
 
 
@@ -46,7 +46,8 @@ def put_before(picture, world):
 
 
 class Names:
-    """Names of passes within one view layer; `shortened`: those that Blender would have cut, as (full, short)."""
+    """Names of passes within one view layer; `shortened`: names that Blender would otherwise have cut, as (full,
+    short)."""
 
     def __init__(self, layer):
         self._room = max(_LONGEST - len(layer.encode()) - len("..X"), 16)
@@ -63,7 +64,8 @@ class Names:
         return short
 
     def own_passes(self, lights):
-        """Returns the passes that Blender has no name for: name, letters of the channels, kind. `lights`: layers of the lights."""
+        """Returns the passes that are not Blender's own: name, letters of the channels, kind. `lights`: layers of the
+        lights."""
         found = [("V", "X", "VALUE")]
         for light in lights:
             found += [(self._short(f"V {light}"), "X", "VALUE"), (self._short(f"Light {light}"), "RGB", "COLOR")]
@@ -75,7 +77,7 @@ class Names:
         names["V.X"] = "V"
         for layer in layers(picture):
             if f"{layer}.V" not in picture.channels:
-                continue  # passes of each light were not requested
+                continue  # passes for each light were not requested
             names[self._short(f"V {layer}") + ".X"] = f"{layer}.V"
             for letter in "RGB":
                 names[f"{self._short(f'Light {layer}')}.{letter}"] = f"{layer}.{letter}"

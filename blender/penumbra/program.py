@@ -24,13 +24,14 @@ def find(wanted):
     raise FileNotFoundError("penumbra is not found; say in the add-on's preferences where it is, or set PENUMBRA")
 
 
-# Layers needed for passes except those of each light: for hundreds of lights, the latter take longer than the picture.
+# Layers for all passes except those of single lights: with hundreds of lights these would take longer than the picture.
 _WITHOUT_LIGHTS = "beauty,V,Z,P,N,Crypto*"
 
 
 def arguments(program, scene, picture, size, settings, moments=()):
-    """Returns the command that renders, the mean over the files of `moments` if there are any. `settings`: exactness, light_samples, method, pixel_samples, pixel_filter,
-    filter_width, light_cutoff, shading_normals, lenient, device, light_passes."""
+    """Returns the command that renders the scene, or the mean over the files of `moments`. `settings`: exactness,
+    light_samples, method, pixel_samples, pixel_filter, filter_width, light_cutoff, shading_normals, lenient, device,
+    light_passes."""
     command = [program, "render", scene, "-o", picture, "--no-studio", "--size", f"{size[0]}x{size[1]}"]
     command += _of_shadows(settings)
     if int(settings.pixel_samples) > 1:
@@ -44,7 +45,7 @@ def arguments(program, scene, picture, size, settings, moments=()):
     command += _of_surfaces(settings)
     if not settings.light_passes:
         command += ["--layers", _WITHOUT_LIGHTS]
-    return command + ["--compression", "none"]  # the add-on alone reads the file, once
+    return command + ["--compression", "none"]  # only the add-on reads the file, and only once
 
 
 def bake_arguments(program, scene, picture, mesh, settings):
@@ -64,7 +65,7 @@ def _of_surfaces(settings):
     return normals + (["--lenient"] if settings.lenient else []) + (["--device", settings.device] if settings.device else [])
 
 
-# Translations of the program's terms for command lines and files to those of Blender's user interface.
+# Terms of the program's command line and files, and those of Blender's user interface that replace them.
 _IN_BLENDER = (
     (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
     (re.compile(r"--lenient"), "'Lenient'"),
@@ -92,8 +93,8 @@ def messages(text, *files):
     return warnings, "; ".join(errors) or None
 
 
-# Ends when its input is closed, however the other process ends; then the running program is ended, too, and the folder
-# is removed. Lines of input are the program's process id, or empty if there is none.
+# Shell script that ends when its input is closed, however this process ends. It then ends the running program and
+# removes the folder. Each line of input is the program's process id, or empty if no program is running.
 _KEEPER = """while read -r line; do program=$line; done
 [ -n "$program" ] && kill "$program" && sleep 1
 rm -rf -- "$1"

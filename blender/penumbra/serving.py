@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A `penumbra serve` child and its messages (docs/serve.md). Knows nothing of Blender."""
+"""A `penumbra serve` child and its messages (docs/serve.md). Independent of Blender."""
 
 import collections
 import itertools
@@ -11,7 +11,7 @@ import threading
 
 import numpy
 
-_LEVELS = {"note": "info"}  # other levels as on the program's stderr
+_LEVELS = {"note": "info"}  # other levels have the same names on the program's stderr
 
 
 def packed(head, data=b""):
@@ -54,8 +54,8 @@ class Child:
         """`started` is called with the process id before anything else is done."""
         self.process = subprocess.Popen([program, "serve", *arguments], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         started(self.process.pid)
-        # Heads of all messages except pictures, in their order; None at the end. `arrival` of a head, and of a picture's,
-        # counts messages of both kinds.
+        # Heads of all messages except pictures, in order; None at the end. The member `arrival` of each head, also of a
+        # picture's, is its number among all messages.
         self.messages = queue.SimpleQueue()
         self._picture, self._waiting, self._wake = None, collections.deque(), threading.Condition()
         self._ends = False
@@ -82,7 +82,7 @@ class Child:
         return picture
 
     def close(self):
-        """Closes its input: the child then ends at once, unless it hangs."""
+        """Closes the child's input: it then ends at once, unless it hangs."""
         with self._wake:
             self._ends = True
             self._waiting.clear()
@@ -108,7 +108,7 @@ class Child:
                 self.process.stdin.write(packed(*message))
                 self.process.stdin.flush()
             except (OSError, ValueError):
-                return  # reported to the reader
+                return  # the reading thread notices the end, too
 
     def _read(self):
         try:
@@ -121,7 +121,7 @@ class Child:
                         self._picture = picture
                 else:
                     self.messages.put(message[0])
-        finally:  # also after bytes that are no message
+        finally:  # also after bytes that are not a message
             self.messages.put(None)
 
 
@@ -129,7 +129,8 @@ _kept = {}  # the process that renders pictures of a sequence, by its program
 
 
 def run(command, cancelled, workspace=None):
-    """Renders as program.run does, in a child process that is kept for the next picture. `command`: PROGRAM render ARGUMENT…"""
+    """Renders like program.run, but in a child process that is kept for the next picture. `command`: PROGRAM render
+    ARGUMENT…"""
     program, _, *arguments = command
     # A child that hangs does not notice that its input has ended: the workspace's keeper ends the child then.
     note = workspace.note_program if workspace is not None else lambda number: None

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Blender's world as a dome light, and as the background. Knows nodes and images by their names and values
-alone, not bpy.
+"""Blender's world as a dome light, and as the background. Uses only names and values of nodes and images,
+not bpy.
 
-The picture of an environment is that of Cycles: a direction d shows the place of M d, where the middle column lies along +X, the top
-row along +Z, and to the right of the middle is -Y. M is what mapping nodes make of d: a turn, or a turn of the mirrored picture.
+An environment's picture is mapped as in Cycles: direction d shows the texel at M d. The picture's middle column is
+along +X, its top row along +Z, and -Y is to the right of the middle. M is the matrix of the mapping nodes: a rotation,
+possibly with a reflection.
 """
 
 import os
@@ -15,7 +16,7 @@ from . import exr, graph, texels
 from .graph import At, Unknown, find_socket
 
 SAMPLED, EXACT, SEEN = "SAMPLED", "EXACT", "SEEN"
-PICTURE = "world.exr"  # name of the file
+PICTURE = "world.exr"  # name of the picture's file
 _LARGEST = 8192  # texels a side, limit of the program
 
 
@@ -24,7 +25,7 @@ class Sky:
     """Light from all directions: `radiance` times the picture's texels, if there is a picture."""
     radiance: tuple = (0.0, 0.0, 0.0)
     image: object = None    # graph.ImageUse
-    pixels: object = None   # linear, in place of the image's own
+    pixels: object = None   # linear texels, in place of the image's
 
     @property
     def is_dark(self):
@@ -32,7 +33,7 @@ class Sky:
 
 
 def may_light(world):
-    """Returns whether the world emits light. Called before a render, for names of passes."""
+    """Returns whether the world emits light. Called before a render, to name the passes."""
     if world is None:
         return False
     if not world.use_nodes or world.node_tree is None:
@@ -46,7 +47,8 @@ def may_light(world):
 
 
 def skies_of(world):
-    """Returns the Sky that lights and the Sky that the camera sees. Raises Unknown if a node is not evaluated."""
+    """Returns the Sky that lights the scene and the Sky that the camera sees. Raises Unknown if a node is not
+    evaluated."""
     if not world.use_nodes or world.node_tree is None:
         sky = Sky(tuple(world.color))
         return sky, sky
@@ -127,8 +129,8 @@ def _turned(angles):
 
 
 def placed(matrix):
-    """The node of a dome whose picture `matrix` looks up (+Y up, -Z the middle column), as rows; and whether the picture is
-    mirrored."""
+    """Returns the matrix, as rows, of the node of a dome whose picture is mapped by `matrix` (in the node +Y is up, -Z
+    the middle column), and whether the picture must be mirrored."""
     mirrored = numpy.linalg.det(matrix) < 0
     if mirrored:
         matrix = numpy.diag((1.0, -1.0, 1.0)) @ matrix
@@ -149,8 +151,9 @@ def picture(sky, mirrored):
 
 
 def write(world, name, wanted, is_seen, glb, path, losses):
-    """Adds the dome to the file, and writes its picture, if it has one, to `path` in the same folder. `wanted`: SAMPLED, EXACT or SEEN; `is_seen`: the film shows the world.
-    Returns the colour that is still to be put behind everything."""
+    """Adds the dome to the file, and writes its picture, if it has one, to `path` in the same folder. `wanted`:
+    SAMPLED, EXACT or SEEN; `is_seen`: the film shows the world. Returns the colour that must still be composited behind
+    everything."""
     try:
         if world.use_nodes and world.node_tree is not None:
             output = world.node_tree.get_output_node("CYCLES")

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Positions of surfaces: distance from a lamp, and whether they are between two distances in front of the camera. Independent of bpy."""
+"""Positions of surfaces: distances from lamps, and whether they are visible within a range of depths. Independent of
+bpy."""
 
 import numpy
 
 
 class Placed:
-    """An object's triangles in the world."""
+    """An object's triangles in world space."""
 
     def __init__(self, name, positions, vertices, matrix):
         self.name, self.positions, self.vertices, self.matrix = name, positions, vertices, numpy.asarray(matrix, float)
@@ -31,7 +32,7 @@ class Placed:
 
 
 class Surfaces:
-    """Placed objects, searched for the nearest to a point."""
+    """A list of Placed objects that finds the one nearest to a point."""
 
     def __init__(self, placed):
         self._placed = placed
@@ -87,7 +88,7 @@ class Frustum:
                 self._sides.append(plane)
 
     def sees(self, placed, start, end):
-        """Returns whether any part is in the picture, at a depth between the two given."""
+        """Returns whether any part is in the picture, at a depth between the two given ones."""
         planes = [*self._sides, numpy.array([0, 0, 1, -start])]
         if numpy.isfinite(end):
             planes.append(numpy.array([0, 0, -1, end]))

@@ -4,7 +4,7 @@
 from math import exp
 
 _TO_REC709 = ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))
-# The observer's three colour matching functions from 380 nm on, every 10 nm, in ten-thousandths.
+# The observer's three colour matching functions, every 10 nm from 380 nm on, in ten-thousandths.
 _OBSERVER = (
     (14, 42, 143, 435, 1344, 2839, 3483, 3362, 2908, 1954, 956, 320, 49, 93, 633, 1655, 2904, 4334, 5945, 7621, 9163, 10263,
      10622, 10026, 8544, 6424, 4479, 2835, 1649, 874, 468, 227, 114, 58, 29, 14, 7, 3, 2, 1),

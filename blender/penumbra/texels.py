@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Texels of Blender's images: read, interpolated as Cycles does, and written as PNG. Knows images by their names and values
-alone, not bpy."""
+"""Texels of Blender's images: read, interpolated as Cycles does, and written as PNG. Uses only names and values of
+images, not bpy."""
 
 import struct
 import zlib
 
 import numpy
 
-# FINE: largest side, in texels, of an image with interpolated texels added; they are added to images of at most half this side.
-# _MOST: largest factor of an image's sides.
+# FINE: largest side, in texels, to which an image is enlarged by interpolation, if its side is at most half of this.
+# _MOST: largest factor by which an image's sides are enlarged.
 FINE, _MOST = 1024, 16
 
 

@@ -5,7 +5,7 @@ from math import atan, degrees, sqrt
 
 
 def _turned(x, y, z):
-    """Converts Z up to Y up, as the exchange file's first node does."""
+    """Converts from Z up to Y up, as the exchange file's first node does."""
     return (x, z, -y)
 
 
@@ -20,7 +20,7 @@ _LARGEST = 4096  # pixels a side of a picture that is shown (docs/serve.md)
 
 
 def _fitting(size):
-    """Returns the size, halved until `serve` shows it; the picture is stretched when it is drawn."""
+    """Returns the size, halved until `serve` accepts it; the picture is enlarged when it is drawn."""
     while max(size) > _LARGEST:
         size = tuple((side + 1) // 2 for side in size)
     return tuple(size)
@@ -28,7 +28,7 @@ def _fitting(size):
 
 class Viewpoint:
     """Viewpoint of a 3D view. `matrix`: rows, from view to world, without scale; `projection`: rows, as in OpenGL;
-    `size`: of the view, in pixels. The member `size` is the picture's: the view's if that is not too large."""
+    `size`: the view's size in pixels. The member `size` is the picture's, which is smaller for very large views."""
 
     def __init__(self, matrix, projection, size):
         self.matrix, self.size = [[float(x) for x in row] for row in matrix], _fitting(size)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The *Rendered* shading of 3D views: a `penumbra serve` child for each, which is sent what changes and nothing else."""
+"""The *Rendered* shading of 3D views: a `penumbra serve` child for each, which is sent only what has changed."""
 
 import traceback
 import weakref
@@ -14,13 +14,13 @@ from .changes import Changes, key_of
 from .export import SceneWriter
 from .viewpoint import Viewpoint
 
-_WORLD = "World"  # name of the world's thing
+_WORLD = "World"  # the world's name among things
 _views = weakref.WeakSet()
 _TICK = 1 / 60  # seconds
 
 
 def _thing_of(instance):
-    """An object, or all instances of an instancer."""
+    """Returns the name of the thing that an instance belongs to: an object, or all instances of an instancer."""
     owner = instance.parent if instance.is_instance else instance.object
     return "Object/" + owner.name_full
 
@@ -51,12 +51,12 @@ class View:
     def __init__(self):
         self.child, self.started_with = None, None  # the process, and its program and settings
         self._workspace = None  # for the picture of the world, made when first needed
-        self._losses = {}  # by thing
-        self._is_stale = False  # things that the scene has were refused
+        self._losses = {}  # of each thing
+        self._is_stale = False  # the child refused things that the scene now contains
         self.picture, self.texture, self.said = None, None, ""
-        self._said_at, self._refused_stamp = -1, 0  # the arrival of what was said; the `show` that was refused last
+        self._said_at, self._refused_stamp = -1, 0  # arrival of the message in `said`; stamp of the last refused `show`
         self.background = (0.0, 0.0, 0.0)
-        self._marks, self._sent, self._order = {}, set(), []  # of things: data for comparison, names sent, and their
+        self._marks, self._sent, self._order = {}, set(), []  # of things: data for comparison, sent names, and
                                                               # order
         self._viewpoint, self._wanted, self._stamp = None, None, 0
         self._backdrop = None
@@ -138,15 +138,15 @@ class View:
         self._losses.update(lost)
 
     def _show(self, wanted, changed):
-        """Sends what else the picture depends on, if it has changed."""
+        """Sends the picture's other settings, if they or things have changed."""
         samples = wanted.light_samples if wanted.exactness == program.SAMPLES else 0
         changed = changed or (samples, wanted.method) != self._wanted
         self._wanted = samples, wanted.method
-        if changed and self._viewpoint is not None:  # else: before the first drawing
+        if changed and self._viewpoint is not None:  # None before the first drawing
             self._send_show()
 
     def _send_show(self, moving=False):
-        """Sends all that a picture depends on apart from things: an earlier `show` may have been refused."""
+        """Sends all settings of the picture, not only changed ones, since an earlier `show` may have been refused."""
         self._stamp += 1
         message = {"type": "show", "stamp": self._stamp, "visibility": True, "moving": moving,
                    "camera": self._viewpoint.camera(), "size": self._viewpoint.size}
@@ -172,7 +172,7 @@ class View:
                 self.said = self.said or "the program has ended"
             elif head["type"] == "say" and head["level"] != "note":
                 refused = head.get("refused")
-                if refused == "put" or not self._is_stale:  # what is refused afterwards follows from it
+                if refused == "put" or not self._is_stale:  # later refusals are consequences of the first
                     self.said = program.messages(f"penumbra: error: {head['text']}")[1]
                     self._said_at = head["arrival"]
                 if refused == "show":
@@ -183,7 +183,7 @@ class View:
         picture = self.child.take_picture()
         if picture is not None:
             self.picture, self.texture = picture, None
-            # A picture of what was there before does not show that the error has passed.
+            # A picture of earlier data does not prove that the error no longer exists.
             is_newer = picture.head["arrival"] > self._said_at and (picture.head["stamp"] or 0) > self._refused_stamp
             if picture.head["final"] and is_newer and not self._is_stale:
                 self.said = ""
@@ -263,9 +263,10 @@ class ShownInViews:
 
 
 def write_whole(path, depsgraph, viewpoint):
-    """Writes the scene as a view shows it into an exchange file, of which `penumbra render --lenient` makes the same picture."""
+    """Writes the scene as shown by a view to an exchange file; `penumbra render --lenient` makes the same picture from
+    it."""
     class Writer(SceneWriter):
         def _camera(self, region):
-            region.write(self.glb)  # the viewpoint, in place of a picture's pixels
+            region.write(self.glb)  # writes the viewpoint, in place of a region of pixels
     lost = losses.Losses()
     Writer(depsgraph, lost, depsgraph.scene.penumbra.shading_normals).write(path, viewpoint)

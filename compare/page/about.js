@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the page's words: the findings at a glance, the question, scene, methods, machine and warnings.
+// Writes the page's texts: the findings at a glance, the question, scene, methods, machine and warnings.
 
 const place = (id) => document.getElementById(id);
 const referenceIsMask = report.reference.output === "mask";
-// The light samples of the reference in words; `same`: what is added if they are those of the methods.
+// Describes the reference's light samples; `same`: text that is added if they are those of the methods.
 const referenceQuestion = (same) => report.reference.question + (referenceIsMask && report.sameSamples ? same : "");
 
-// The first few, and how many more there are.
+// Lists the first three names, and the number of further ones.
 function namesText(named) {
   const names = named.slice(0, 3).map((result) => result.entry).join(", ");
   return named.length > 3 ? `${names} and ${named.length - 3} more` : names;
 }
 
-// Returns the methods that answer every pair as rays do, or else those with the fewest differences.
+// Returns a card (title, names, text) with the methods that have the fewest pairs differing from rays.
 function exactnessCard() {
   const sums = results.map((result) => {
     const same = result.lights.map((light) => light.sameSamples).filter(Boolean);
@@ -75,7 +75,7 @@ function showQuestion() {
 const factsTable = (facts) => make("div", { class: "scroll" }, make("table", { class: "facts" }, make("tbody", {}, facts.map(([name, value]) =>
   make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, value))))));
 
-// Describes a method; links to it lead here.
+// Describes a method; links to the method lead to this element.
 function methodText(name, method) {
   return make("details", { id: methodPlace(name) }, make("summary", {}, name),
     make("p", {}, `${method.family}-based; after ${method.paper}. Exact for ${method.exactFor}. Answers with ${method.output}.`,
@@ -109,7 +109,7 @@ function showMachine() {
 }
 
 function showWarnings() {
-  // The same remark on the scene comes with every method.
+  // A set, since every method repeats the warnings about the scene.
   const warnings = new Set([...report.warnings, ...[metrics.reference, ...results].flatMap((stats) => stats.warnings)]);
   const section = place("warnings");
   section.hidden = warnings.size === 0;

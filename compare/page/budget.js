@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why each method is wrong: its error without one cause alone, and without all (docs/error-budget.md).
+// Shows the causes of each method's error: the error without one cause alone, and without all (docs/error-budget.md).
 
 const kCauses = ["resolution", "view", "layers", "fusion", "gaps", "bias", "samples", "falloff"];
 const kAllButView = "all but the view", kAllAtOnce = "all at once";
@@ -9,7 +9,7 @@ function budgetBar(from, x, width, kind) {
     drawn("path", { class: "frame", d: `M${from} 0V10` }),
     drawn("rect", { class: kind, x: x.toFixed(1), y: 2, width: width.toFixed(1), height: 6 }));
 }
-// The error gets smaller to the left of the middle; 38 is the largest change of all.
+// Draws a change of the error: to the left of the middle if it becomes smaller; the largest change has the length 38.
 function changeBar(change, largest) {
   const length = largest > 0 ? 38 * Math.abs(change) / largest : 0;
   return budgetBar(40, change < 0 ? 40 - length : 40, length, change < 0 ? "better" : "worse");
@@ -50,7 +50,7 @@ function runsTable(name, runs) {
   return tableOf(`What was run for ${name}`, ["Repaired", "How, or why not", "RMSE without it", "Pixels that it changes", "Runs"], rows);
 }
 
-// Shows where a repair changes V: pictures that grow to the window.
+// Shows where a repair changes V, in pictures that can be enlarged to the size of the window.
 function repairPictures(name, pictures, { errorBudget: budget, errorBudgetRuns: runs }) {
   if (pictures.length === 0) return [];
   const figures = pictures.map(({ repaired, png }) => {
@@ -80,7 +80,7 @@ function budgetUnder(light, largest) {
 function errorBudget() {
   const all = succeeded.flatMap((result) => result.lights).filter((light) => light.errorBudget);
   if (all.length === 0) return [];
-  const largest = {  // over all lights, so that tables can be compared
+  const largest = {  // maxima over all lights, so that tables can be compared
     change: Math.max(...all.flatMap(({ errorBudget: budget }) => kCauses.map((cause) => Math.abs(budget[cause] ?? 0)))),
     error: Math.max(...all.flatMap(({ errorBudget: budget, errorBudgetRuns: runs }) => [runs.rmse, budget.remainder ?? 0])) };
   return [make("h3", { id: "error-budget" }, "Error budget"), make("p", { class: "note" }, "Over each light’s judged pixels. A dash: nothing separates this cause "

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that the page shows: `report`, whose `metrics` is metrics.json (compare/report.cpp writes both), and the numbers behind
-// the pictures. The page carries these deflated (zlib) as base64, each in an element that no browser
-// runs; nothing is unpacked before it is shown. compare/report_data.hpp packs what is unpacked here.
+// The page's data: `report`, whose `metrics` is metrics.json (compare/report.cpp writes both), and the numbers behind
+// the pictures. The page contains these numbers deflated (zlib) as base64, each list in an element browsers ignore;
+// a list is unpacked only when it is needed. compare/report_data.hpp packs the data that are unpacked here.
 
 const report = JSON.parse(document.getElementById("report-data").textContent);
 
-// Each thing is made once, at first use: `keep("v0", make)` gives the promise of what make() made.
+// Makes each value only once, at first use: `keep("v0", make)` returns the value, usually a promise, made by make().
 const kept = new Map();
 function keep(key, make) {
   if (!kept.has(key)) kept.set(key, make());
@@ -18,7 +18,7 @@ async function unpackBytes(id) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-// Planes of bytes, most significant first, back to numbers: `size` bytes each.
+// Joins planes of bytes, the most significant first, to numbers of `size` bytes each.
 function joinPlanes(planes, size) {
   const count = planes.length / size;
   const numbers = size === 4 ? new Uint32Array(count) : new Uint16Array(count);
@@ -28,27 +28,27 @@ function joinPlanes(planes, size) {
   return numbers;
 }
 
-// V of each pixel, as the float32 that the EXR file has.
+// Returns V of each pixel: the same float32 as in the EXR file.
 function visibilityOf(entry, light) {
   const id = report.entries[entry].lights[light].v;
   return keep(id, async () => new Float32Array(joinPlanes(await unpackBytes(id), 4).buffer));
 }
 
-// The class of each pixel under a light: an index into report.classNames; 0 is background.
+// Returns the class of each pixel under a light: an index into report.classNames; 0 is background.
 function classesOf(light) {
   const id = report.lights[light].classes;
   return keep(id, () => unpackBytes(id));
 }
 
-// One bit a light sample, whole words of 32 a pixel; null for a method without masks.
+// Returns the masks: one bit per light sample, whole words of 32 bits per pixel; null for a method without masks.
 function masksOf(entry, light) {
   const id = report.entries[entry].lights[light].masks;
   return id ? keep(id, () => unpackBytes(id)) : Promise.resolve(null);
 }
 
-// Linear radiance of each pixel as codes, red green blue: 0 is black, c is 2^((c − 1) / 256 − 64). The reference's come
-// as green, red less green and blue less green, each less its left neighbour, modulo 2^16; others' as steps of four
-// codes: green's from the reference's green, red's and blue's from the reference's own and green's steps.
+// Returns the linear radiance of each pixel as codes, red green blue: 0 is black, c is 2^((c − 1) / 256 − 64). The
+// reference's codes are packed as green, red minus green and blue minus green, each minus its left neighbour, modulo
+// 2^16 (pack_radiance); those of other entries as steps of four codes from the reference (pack_radiance_over).
 function radianceCodesOf(entry) {
   const id = report.entries[entry].beauty;
   if (entry !== 0 && report.entries[0].beauty !== null) {
@@ -80,7 +80,7 @@ function radianceCodesOf(entry) {
 
 const linearOfCode = (code) => (code === 0 ? 0 : 2 ** ((code - 1) / 256 - 64));
 
-// Returns which light samples a pixel sees: an array of booleans.
+// Returns for each light sample whether it is visible from the pixel.
 function seenSamples(masks, pixel, count) {
   const first = pixel * 4 * Math.ceil(count / 32);
   return Array.from({ length: count }, (_, j) => (masks[first + (j >> 3)] >> (j & 7) & 1) === 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elements of the page, and numbers as texts. All texts go through here, and none becomes markup.
+// Makes elements of the page, and texts of numbers. All texts are added here, as text nodes: none becomes markup.
 
 const kNotThere = "–";
 const kSvg = "http://www.w3.org/2000/svg";
@@ -14,18 +14,18 @@ function filled(element, values, children) {
 const make = (tag, values = {}, ...children) => filled(document.createElement(tag), values, children);
 const drawn = (tag, values = {}, ...children) => filled(document.createElementNS(kSvg, tag), values, children);
 
-// A part that opens on request; nothing if there is nothing in it.
+// Returns a part that opens on request; null if it has no content.
 function folded(summary, ...children) {
   const inside = children.flat().filter(Boolean);
   return inside.length > 0 ? make("details", {}, make("summary", {}, summary), inside) : null;
 }
 
-// Three significant digits: 0, 0.0123, 1.2e-5.
+// Returns three significant digits: 0, 0.0123, 1.2e-5.
 function errorText(number) {
   if (number === 0) return "0";
   const [mantissa, exponent] = number.toExponential(2).split("e").map(Number);
   const text = exponent < -4 || exponent > 2 ? `${mantissa}e${exponent}` : `${Number(number.toPrecision(3))}`;
-  return text.replace(/^-/, "−");  // as wide as a plus
+  return text.replace(/^-/, "−");  // a minus sign, as wide as a plus
 }
 const signedText = (number) => (number > 0 ? "+" : "") + errorText(number);
 const percentText = (share) => `${errorText(100 * share)} %`;
@@ -35,7 +35,7 @@ function secondsText(seconds) {
   if (seconds === null || seconds === undefined) return kNotThere;
   if (seconds === 0) return "0";
   if (seconds < 1e-3) return `${errorText(seconds * 1e6)} µs`;
-  if (seconds < 0.9995) return `${errorText(seconds * 1e3)} ms`;  // below what would be rounded up to 1000 ms
+  if (seconds < 0.9995) return `${errorText(seconds * 1e3)} ms`;  // larger values would be rounded up to 1000 ms
   return seconds < 99.95 ? `${errorText(seconds)} s` : `${seconds.toFixed(0)} s`;
 }
 
@@ -46,7 +46,7 @@ function bytesText(bytes) {
   return `${bytes.toFixed(unit === 0 || bytes >= 100 ? 0 : 1)} ${units[unit]}`;
 }
 
-// "2.10× faster" or "1.40× slower" than the reference.
+// Returns "2.10× faster" or "1.40× slower", compared with the reference.
 function speedText(seconds, reference) {
   if (!(seconds > 0) || !(reference > 0)) return kNotThere;
   const shown = Math.max(reference / seconds, seconds / reference);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of the page itself, painted when they come into sight, and the wipe that the page begins with.
+// Paints the pictures on the page itself when they become visible, and the wipe at the top of the page.
 
-// One canvas of the page: `what` as pictureOf() takes it.
+// Paints one canvas of the page; `what` is that of pictureOf().
 async function paintOn(canvas, what) {
   const picture = await pictureOf(what, { stops: 0, limit: report.errorLimit });
   canvas.width = report.width;
@@ -53,7 +53,7 @@ async function lookFirst() {
   paint();
 }
 
-// A link to what is folded away opens it, and whatever it lies in.
+// Opens the folded parts that contain the target of a link.
 function unfold() {
   let element = document.getElementById(decodeURIComponent(location.hash.slice(1).replace(/%(?![0-9A-Fa-f]{2})/g, "%25")));
   if (!element) return;

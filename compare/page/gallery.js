@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of the page: figures whose canvases are painted when they come into sight, and that open the viewer.
+// The pictures of the page: figures that open the viewer; their canvases are painted when they become visible.
 
 // Old browsers can neither unpack the numbers nor show the viewer.
 const canPaint = report.entries.length > 0 && typeof DecompressionStream === "function" && typeof HTMLDialogElement === "function";
 
 const labelOf = ({ role, method }) => (role === "method" ? results[method].entry : role === "rays" ? raysLabel() : metrics.reference.method);
 for (const entry of report.entries) entry.label = labelOf(entry) + (entry.role === "reference" ? " (reference)" : "");
-// An entry's error under a light; null for the reference.
+// Returns an entry's error under a light; null for the reference.
 const errorOf = ({ role, method }, light) =>
   (role === "reference" ? null : (role === "rays" ? metrics.sameSamples : results[method]).lights[light]?.error ?? null);
 
-// `what` is as pictureOf() takes it.
+// Returns a figure; `what` is that of pictureOf().
 function figureOf(what, note, name = labelOf(report.entries[what.entry])) {
   const alt = `${{ beauty: "Beauty", v: "V", error: "Signed error of V" }[what.layer]} by ${name}${note ? `: ${note}` : ""}`;
   return make("figure", {}, make("label", { class: "picture" },
@@ -35,7 +35,7 @@ function legendOf(label, ends, colors, ticks, note) {
 const visibilityLegend = () => legendOf("Grey scale of V: black is 0, the light is hidden; white is 1, the whole light is seen", ["light hidden", "light seen"],
   [[0, 0, 0], [255, 255, 255]], [0, 0.25, 0.5, 0.75, 1].map((v) => [100 * v, `${v}`]), "");
 
-// A tick lies at √ of its share of the limit, on the same curve as the colours: a quarter of the limit half way.
+// Each tick is at the square root of its share of the limit, as the colours are: a quarter of the limit is half way.
 function errorLegend() {
   const limit = report.errorLimit, text = errorText(limit);
   const places = Array.from({ length: 65 }, (_, i) => i / 32 - 1);
@@ -71,7 +71,7 @@ function showGallery() {
     ...part(`Where each method is wrong${under(light)}`, light === 0 ? errorLegend() : [], figures("error", light, offBy(light)))]));
 }
 
-// The wipe that the page begins with: the largest error beside the smallest, or one method beside the reference.
+// Shows the wipe at the top of the page: the largest error next to the smallest, or the only method and the reference.
 function showFirstLook() {
   const judged = [...report.entries.keys()].filter((entry) => report.entries[entry].role === "method" && errorOf(report.entries[entry], 0));
   if (!canPaint || judged.length === 0) return;

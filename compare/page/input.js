@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pointer, keys and controls of the viewer, and the page's links that open it.
+// Handles pointer, keys and controls of the viewer, and the page's links that open it.
 
 function setPixel(pixel, hold) {
   state.held = hold && pixel !== null;
@@ -8,7 +8,7 @@ function setPixel(pixel, hold) {
 }
 
 function listenToPointers() {
-  const down = new Map();  // pointers that touch, and where
+  const down = new Map();  // pressed pointers and their positions
   let moved = 0, wiping = false;
   const place = (event) => {
     const box = canvas.getBoundingClientRect();
@@ -49,7 +49,7 @@ function listenToPointers() {
     down.delete(event.pointerId);
     if (event.type === "pointerup" && at && !wiping && moved < 6 * devicePixelRatio) {
       const pixel = pixelAt(at.x, at.y);
-      // A second click on the held pixel lets it go.
+      // A second click on the held pixel releases it.
       setPixel(pixel, !(state.held && String(pixel) === String(state.pixel)));
     }
   };
@@ -63,7 +63,7 @@ function listenToPointers() {
   }, { passive: false });
 }
 
-// The pixel beside, kept in sight.
+// Selects a neighbouring pixel, and scrolls so that it stays visible.
 function step(x, y) {
   const [column, row] = state.pixel ?? [Math.floor(state.x), Math.floor(state.y)];
   setPixel(state.pixel ? [column + x, row + y] : [column, row], true);
@@ -83,7 +83,7 @@ const swap = () => {
   [state.a, state.b] = [state.b, state.a];
   if (state.bLayer) [state.layer, state.bLayer] = [state.bLayer, state.layer];
 };
-// Exposure of a beauty, or the scale of errors.
+// Changes the exposure of the beauty, or the scale of errors.
 const brighter = (by) => () => {
   if (state.layer === "beauty") state.stops += 0.5 * by;
   else state.limit = kLimits[clamp(kLimits.indexOf(state.limit) - by, 0, kLimits.length - 1)];
@@ -98,7 +98,7 @@ const kKeys = {
 const kSteps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 function onKey(event) {
-  // A control that has the focus has the keys that move it: all of a list's, a slider's and a choice's arrows.
+  // A control that has the focus keeps its own keys: a list all keys, a slider and a choice the arrows.
   const own = event.target.tagName;
   if (own === "SELECT" || event.altKey || event.metaKey) return;
   if (event.shiftKey && kSteps[event.key] && own !== "INPUT") {
@@ -134,7 +134,7 @@ function listenToControls() {
   new ResizeObserver(() => viewer.open && draw()).observe(stage);
 }
 
-// A picture is a button that opens the viewer on it.
+// Each picture is a button that opens the viewer with this picture.
 function openFromPage() {
   for (const box of document.querySelectorAll("input[data-entry]")) {
     box.addEventListener("click", () => open({

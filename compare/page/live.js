@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// "Open live": two of the methods side by side in `penumbra view`, started by a command to copy, or already there. A page from a
-// file can neither start a program nor ask one (its own policy forbids that too), and knows no address: the view prints it.
+// "Open live": shows two of the methods in `penumbra view`, which the user starts by a copied command, or which already
+// runs. A page from a file can neither start a program nor connect to one (its content policy forbids that too), and
+// does not know the address: `penumbra view` prints it.
 
 const quotedForShell = (text) => (/^[\w@%+=:,.\/-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-// A result's method with its options, as `--method` takes it.
+// Returns a result's method with its options, in the form of `--method`.
 const entryOf = (result) => [result.method, ...Object.entries(result.options).map(([key, value]) => `${key}=${value}`)].join(":");
 
 function addressOf(text) {
@@ -38,7 +39,7 @@ function showLive() {
   document.getElementById("live-copy").addEventListener("click", () => {
     const selection = getSelection();
     selection.selectAllChildren(command);
-    const copied = document.execCommand("copy");  // needs no permission, unlike the newer way
+    const copied = document.execCommand("copy");  // needs no permission, unlike navigator.clipboard
     say.textContent = copied ? "Copied: run it in a terminal, in the folder where the comparison was run." : "The browser does not copy; the command is selected.";
     if (copied) selection.removeAllRanges();
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of numbers: failures, errors, exactness pair by pair, seconds, passes and counters.
+// Writes the tables of numbers: failures, errors, exactness pair by pair, seconds, passes and counters.
 
 const { metrics } = report;
 const results = metrics.methods;
@@ -16,7 +16,7 @@ const shadowOf = (stats) => stats.seconds.shadow;
 const methodOf = (result) => report.methods[results.indexOf(result)];
 const methodPlace = (name) => `method-${name}`;
 
-// Returns the entries with the smallest number, compared as the page shows it: a tie that is displayed has no winner.
+// Returns the entries with the smallest number, compared as displayed: entries that look equal are all returned.
 function smallest(numberOf, textOf) {
   const known = results.filter((result) => numberOf(result) !== null);
   const best = textOf(Math.min(...known.map(numberOf)));
@@ -39,7 +39,8 @@ function errorCells(error, isBest) {
     numberCell(error.over05, percentText), numberCell(error.bias, signedText)];
 }
 
-// `errorOf`: of a result; `rays`: the error that the methods' light samples alone make.
+// Returns a table of errors. `errorOf`: returns the error of a result; `rays`: the error that comes from the
+// number of light samples alone.
 function errorsTable(caption, errorOf, { withBeauty = false, rays = null } = {}) {
   const best = errorText(Math.min(...succeeded.map((result) => errorOf(result)?.rmse ?? Infinity)));
   const rows = succeeded.map((result) => {
@@ -56,7 +57,7 @@ function errorsTable(caption, errorOf, { withBeauty = false, rays = null } = {})
     ...(withBeauty ? ["RMSE of the beauty"] : [])], rows);
 }
 
-// Errors over the whole picture, and under each light.
+// Returns the tables of errors: under all lights together, under each light, and at horizon pixels.
 function errorTables() {
   const against = `Error of V against ${metrics.reference.method}`;
   const whole = several ? [errorsTable(`${against} under all lights together. 0 would be perfect.`, (result) => result.errorAllLights,
@@ -75,8 +76,8 @@ function errorTables() {
   return { whole, each, horizon };
 }
 
-// A row for each method that has parts: [{name, pixels, rmse, bias}]. Where all methods have the same pixels, the headers
-// have their number.
+// Returns a table with a row for each method that has parts: [{name, pixels, rmse, bias}]. If all methods have the same
+// pixels, the headers contain their number.
 function partsTable(caption, partsOf, samePixels) {
   const known = succeeded.filter((result) => partsOf(result)?.length > 0);
   if (known.length === 0) return null;
@@ -86,7 +87,7 @@ function partsTable(caption, partsOf, samePixels) {
     numberCell(rmse, () => `${rmse.toFixed(4)} (${signed(bias)})${samePixels ? "" : ` of ${countText(pixels)}`}`))]));
 }
 
-// Writes errors by class of pixel, width of the penumbra, and distance of what hides the light.
+// Returns tables of errors by class of pixel, by width of the penumbra, and by distance of the hiding object.
 function classTables() {
   const classes = (of) => of && Object.entries(of).map(([name, part]) => ({ name, ...part }));
   const ranges = (of) => of?.map((part) => ({ name: part.to === null ? `from ${part.from}` : `${part.from} … ${part.to}`, ...part }));
@@ -104,7 +105,7 @@ function classTables() {
   });
 }
 
-// Errors as they are perceived, and what separation costs methods that know V alone.
+// Returns tables of perceived errors, and of the error that methods with V alone make by separating V from shading.
 function eyeTables() {
   const eyes = report.lights.map((_, light) => {
     const flip = light === 0;
@@ -128,7 +129,7 @@ function eyeTables() {
     share(result.separation.ofV.relativeRmse), numberCell(result.separation.change, signedText)]))];
 }
 
-// Methods with masks beside rays on the same light samples.
+// Returns tables that compare methods with masks pair by pair with rays on the same light samples.
 function pairTables() {
   const share = (part, whole) => (whole === 0 ? kNotThere : { text: errorText(part / whole), value: part / whole });
   const tables = report.lights.flatMap((_, light) => {
@@ -172,7 +173,7 @@ function secondsTable() {
   const rows = [row({ text: reference.method, small: `the reference, ${question}` }, reference, false, kNotThere)];
   for (const result of succeeded) {
     const method = methodOf(result);
-    // Most methods run on one device, which is among the machine's facts.
+    // Most methods run on one device, which the machine's table names; only other devices are named here.
     const device = result.device === results[0].device ? "" : `, ${result.device}`;
     rows.push(row({ text: result.entry, small: method.question + device }, result, best.includes(result),
       method.sameQuestion ? speedText(shadowOf(result), shadowOf(reference)) : kNotThere));

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers to colours: the same pictures as those of the page, by the same formulas (compare/error_picture.cpp), for
-// any exposure and scale.
+// Converts numbers to pictures, for any exposure and scale, by the formulas of the program's own pictures
+// (compare/error_picture.cpp).
 
 function srgbByte(linear) {
   const x = Math.min(1, Math.max(0, linear));
   return Math.round(255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055));
 }
 
-// White is right, blue too bright, red too dark; the depth grows with the root of the error's share of the limit.
+// Returns the colour of an error: white is right, blue too bright, red too dark. The depth grows with the square root
+// of the error divided by the limit.
 function errorColor(error, limit) {
   const arm = error > 0 ? report.tooBright : report.tooDark;
   const depth = Math.sqrt(Math.min(1, Math.abs(error) / limit)) * (arm.length - 1);
@@ -15,12 +16,12 @@ function errorColor(error, limit) {
   return [0, 1, 2].map((c) => Math.round(arm[from][c] * (1 - share) + arm[from + 1][c] * share));
 }
 
-// A canvas of the picture's own size. `what`: {layer: beauty|v|error, entry, light}; `look`: {stops, limit}.
+// Returns a canvas of the picture's own size. `what`: {layer: beauty|v|error, entry, light}; `look`: {stops, limit}.
 function pictureOf(what, look) {
   const { layer, entry, light } = what;
   const setting = layer === "beauty" ? look.stops : layer === "error" ? look.limit : 0;
   const place = `picture ${layer} ${entry} ${layer === "beauty" ? 0 : light}`;
-  // The last setting alone of each picture is kept: a slider would otherwise fill the memory.
+  // Only the last setting of each picture is kept; otherwise a slider would fill the memory.
   if (kept.get(place)?.setting !== setting) {
     const promise = paint(what, look);
     promise.setting = setting;
@@ -62,8 +63,8 @@ async function paint({ layer, entry, light }, { stops, limit }) {
   return canvas;
 }
 
-// The light as a view sample sees it: a dot a light sample, bright if it is seen; a ring where rays on the same light
-// samples say otherwise. `seen`, `rays`: arrays of booleans; rays may be null.
+// Draws the light as seen from a view sample: a dot for each light sample, bright if visible; a ring around it if rays
+// on the same light samples disagree. `seen`, `rays`: arrays of booleans; rays may be null.
 function paintLight(canvas, light, points, seen, rays) {
   const context = canvas.getContext("2d");
   const size = canvas.width, middle = size / 2, reach = middle - 3;

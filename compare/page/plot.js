@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// RMSE of V against seconds for the shadow, both by powers of ten; marks without any error lie on a line of their own.
+// Plots RMSE of V against seconds for the shadow, both axes logarithmic; marks without error are on a separate line.
 
 const kNoError = 2 ** -25;  // half of the last digit of V, a float
 const kPlot = { left: 64, right: 660, top: 16, bottom: 372, width: 860, height: 420 };
 
-// Whole powers of ten around all values but 0.
+// Returns the whole powers of ten around all values except 0.
 function decadesOf(values) {
   const known = values.filter((value) => value >= kNoError).map(Math.log10);
   const first = known.length > 0 ? Math.floor(Math.min(...known)) : 0;
@@ -22,8 +22,8 @@ function plotMark({ family, title, x, y }) {
   return drawn("g", { class: "mark" }, shape, drawn("title", {}, title));
 }
 
-// Names to the right of their marks, or to the left where there is no room, and moved up or down where another text is;
-// `taken`: texts as {x, end, y}.
+// Places names to the right of their marks, or to the left if there is no room, and moves them up or down if another
+// text is already there. `taken`: other texts as {x, end, y}.
 function plotNames(marks, taken) {
   const line = 15, boxes = [...taken, ...marks.map(({ x, y }) => ({ x: x - 7, end: x + 7, y }))];
   const isFree = (box) => box.y > kPlot.top + 4 && box.y < kPlot.bottom + 4

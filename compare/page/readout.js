@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows what the pixel under the pointer has: V in every method, the error, and which light samples are seen.
+// Shows the values of the pixel under the pointer: V by every method, the error, and the visible light samples.
 
 const digits = (value) => (Number.isNaN(value) ? "not evaluated" : String(+value.toFixed(6)).replace("-", "−"));
 const signed = (value) => (value > 0 ? "+" : "") + digits(value);

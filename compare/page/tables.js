@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables: built from numbers, sorted by a click on a column's header, and saved as comma-separated values.
 
-// A cell is a text, or {text, value, small, href, best, picture}: `value` is what the column is sorted by and what is
-// saved, `small` a second, paler line, `picture` an element below the text.
+// A cell is a text, or {text, value, small, href, best, picture}: `value` is used for sorting and saving the column,
+// `small` is a second, paler line, `picture` an element below the text.
 function cellOf(cell, isFirst) {
   const { text, value, small, href, best, picture } = typeof cell === "object" ? cell : { text: cell };
   const label = href ? make("a", { href }, text) : best ? make("span", { class: "best" }, text) : text;
@@ -12,7 +12,7 @@ function cellOf(cell, isFirst) {
 
 let captions = 0;
 
-// Returns nothing if there are no rows; the first cell of a row is its header.
+// Returns a table; null if there are no rows. The first cell of a row is its header.
 function tableOf(caption, headers, rows) {
   if (rows.length === 0) return null;
   const id = `caption-${++captions}`;
@@ -24,7 +24,7 @@ function tableOf(caption, headers, rows) {
   return make("div", { class: "scroll", tabindex: 0, role: "region", "aria-labelledby": id }, table);
 }
 
-// Numbers as exact as they are known (RFC 4180).
+// Returns the table as comma-separated values (RFC 4180), with numbers in full precision.
 function csvOf(table) {
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   const textOf = (cell) => cell.dataset.value ?? cell.textContent.trim().replaceAll(/\s+/g, " ");
@@ -43,7 +43,8 @@ function offerCsv(table) {
   table.caption.append(" ", button);
 }
 
-// Rising, falling, and back as they were. Rows without a value stay last, and equal rows in their order.
+// Makes a click on a header sort the column: ascending, descending, then in the original order. Rows without a value
+// stay last, and equal rows keep their order.
 function makeSortable(table) {
   const body = table.tBodies[0];
   const original = [...body.rows];

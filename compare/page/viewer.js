@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The viewer: one picture, two with a wipe between them, or all at once, with one zoom for all. What is shown is in
-// `state` alone; every control and key changes it and calls update(). The address keeps it (#look?…), as a link to it.
+// The viewer: one picture, two with a wipe between them, or all at once, with one zoom for all. All settings are in
+// `state`: every control and key changes it and calls update(). The page's address contains it (#look?…), so that it
+// can be used as a link.
 
 const find = (id) => document.getElementById(id);
 const viewer = find("viewer"), stage = find("viewer-stage"), canvas = stage.querySelector("canvas");
@@ -10,10 +11,10 @@ const kMostZoom = 64;
 
 const state = {
   layer: "v", light: 0, view: "one",
-  a: 0, b: 0, bLayer: "",  // entries; bLayer empty: as a
+  a: 0, b: 0, bLayer: "",  // indices of entries; bLayer: layer of b, empty: that of a
   wipe: 0.5, stops: 0, limit: report.errorLimit,
-  zoom: 1, x: report.width / 2, y: report.height / 2,  // what is in the middle, in pixels
-  pixel: null, held: false,  // [column, row] that is read out; held: a click chose it, moving over others does not
+  zoom: 1, x: report.width / 2, y: report.height / 2,  // x, y: pixel in the middle of the view
+  pixel: null, held: false,  // shown [column, row]; held: chosen by a click, not changed by moving the pointer
 };
 
 const has = (entry, layer) => (layer === "beauty" ? report.entries[entry].beauty !== null
@@ -27,9 +28,9 @@ function next(list, current, step) {
   return list[(at + step + list.length) % list.length];
 }
 
-// --- Where things are on the canvas -----------------------------------------------------------------------------------
+// --- Positions on the canvas ------------------------------------------------------------------------------------------
 
-// Boxes that the canvas shows, in canvas pixels, each with its picture and the part of it that is not covered.
+// Returns the boxes on the canvas, in canvas pixels, each with its picture and its visible columns `from` … `to`.
 function panes() {
   const { width, height } = canvas;
   const whole = { x: 0, y: 0, width, height };
@@ -41,7 +42,7 @@ function panes() {
   }
   const entries = entriesWith(state.layer);
   let best = { scale: 0, columns: 1 };
-  const most = Math.max(1, Math.floor(width / (130 * devicePixelRatio)));  // names are as wide as that
+  const most = Math.max(1, Math.floor(width / (130 * devicePixelRatio)));  // room for a name in each column
   for (let columns = 1; columns <= Math.min(most, entries.length); ++columns) {
     const scale = Math.min(width / columns / report.width, height / Math.ceil(entries.length / columns) / report.height);
     if (scale > best.scale) best = { scale, columns };
@@ -54,10 +55,10 @@ function panes() {
   });
 }
 
-// Canvas pixels a picture's pixel, if the whole picture just fits, times the zoom.
+// Returns the size of a picture's pixel in canvas pixels: at zoom 1 the whole picture just fits.
 const scaleIn = (box) => state.zoom * Math.min(box.width / report.width, box.height / report.height);
 
-// The picture's pixel under a place on the canvas: exact coordinates; null beside all pictures.
+// Returns the picture's coordinates at a point of the canvas, as fractions of pixels; null outside all pictures.
 function pictureAt(x, y) {
   const pane = panes().find((p) => x >= p.from && x < p.to && y >= p.box.y && y < p.box.y + p.box.height);
   if (!pane) return null;
@@ -73,7 +74,7 @@ function pixelAt(x, y) {
   return inside ? [Math.floor(at.x), Math.floor(at.y)] : null;
 }
 
-// Zooms so that what is at `fixed` (from pictureAt) stays where it is.
+// Zooms so that the point `fixed` (from pictureAt) stays in place.
 function zoomTo(zoom, fixed = { x: state.x, y: state.y }) {
   const before = state.zoom;
   state.zoom = clamp(zoom, 1, kMostZoom);
@@ -92,7 +93,7 @@ async function draw() {
   canvas.height = Math.round(stage.clientHeight * devicePixelRatio);
   const shown = panes();
   const pictures = await Promise.all(shown.map(({ entry, layer }) => pictureOf({ layer, entry, light: state.light }, state)));
-  if (mine !== turn) return;  // something else is wanted by now
+  if (mine !== turn) return;  // another call of draw() has begun since
   const context = canvas.getContext("2d");
   context.clearRect(0, 0, canvas.width, canvas.height);
   shown.forEach((pane, i) => drawPane(context, pane, pictures[i]));
@@ -134,7 +135,7 @@ function drawPane(context, { entry, layer, box, from, to }, picture) {
   context.restore();
 }
 
-// --- From the state to the controls, and to the address ---------------------------------------------------------------
+// --- Writing the state to the controls and to the address -------------------------------------------------------------
 
 function fill(select, options, value) {
   select.replaceChildren(...options.map(([key, text]) => new Option(text, key, false, key === value)));
@@ -175,7 +176,7 @@ function writeAddress() {
   history.replaceState(null, "", `#look?${words}`);
 }
 
-// Anything may stand in an address: what is no view of this report is put right by update().
+// An address may contain anything: update() replaces values that are not valid for this report.
 function readAddress() {
   if (!location.hash.startsWith("#look")) return false;
   for (const [key, value] of new URLSearchParams(location.hash.slice(6))) {
@@ -217,7 +218,7 @@ function update() {
   showControls();
   draw();
   showValues();
-  clearTimeout(addressTimer);  // browsers refuse hundreds of changes a second
+  clearTimeout(addressTimer);  // browsers reject hundreds of changes per second
   addressTimer = setTimeout(() => viewer.open && writeAddress(), 200);
 }
 

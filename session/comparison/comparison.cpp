@@ -45,7 +45,7 @@ using visibility::Output;
 
 class Comparison {
  public:
-  /// Limit of all lights' masks by rays, which are kept while the methods run.
+  /// Largest size of the masks by rays of all lights together, which are kept while the methods run.
   static constexpr std::uint64_t kMostRayBytes = std::uint64_t{1} << 30;
   /// Number of repetitions of the search for view samples if no number of runs is requested.
   static constexpr std::uint32_t kViewRuns = 3;
@@ -134,7 +134,7 @@ class Comparison {
     return words * sizeof(std::uint32_t);
   }
 
-  /// Masks of rays are kept complete, light by light: every method's masks are compared with them.
+  /// Returns a sink that keeps the complete masks of rays, light by light: every method's masks are compared with them.
   [[nodiscard]] TileSink keep_rays() {
     return [this, whole_of = wholes_of_pieces(session_.lights)](const TileResult& tile) {
       auto& pieces = truths_[whole_of[tile.light]].ray_masks;
@@ -202,7 +202,7 @@ class Comparison {
     progress_.clear();
     compare::SampleCost cost;
     cost.stats = runner_.stats_of(rays, session_.lights, done.run);
-    cost.stats.seconds = {};  // one run without warm-up
+    cost.stats.seconds = {};  // not comparable: one run without warm-up
     cost.all_lights_error = error_of_all_lights(done.run, truths_);
     cost.lights = LightJudge(session_, truths_, 0).judge(done.run, progress_);
     report_.rays = report_entry(session_, rays.description, {done.run, {}, masks.finish()});
@@ -211,7 +211,7 @@ class Comparison {
       truths_[light].rays = std::move(done.run.visibility[light]);
   }
 
-  /// Runs all entries, and forgets those that are left out for their time.
+  /// Runs all entries, and removes those that take too long.
   void run_entries() {
     std::vector<Entry> kept;
     for (Entry& entry : entries_) {

@@ -31,25 +31,26 @@ struct ComparisonOptions {
   bool error_budget = false;    ///< compute the causes of error of each method
   std::filesystem::path stats;  ///< empty: only DIR/metrics.json
   TevPictures* tev = nullptr;   ///< shows each written picture
-  /// References evaluate few pixels between two calls of Progress: for a caller that ends a comparison through it.
+  /// References evaluate only few pixels between two calls of Progress, for a caller that stops a comparison through
+  /// it.
   bool reports_often = false;
   bool writes = true;          ///< writes all of DIR; false: writes nothing and only returns the result
   std::optional<double> time;  ///< time of the scene in seconds; nullopt: at rest
-  /// Pictures of earlier frames, by entry; null: this is no sequence.
+  /// Pictures of earlier frames, by entry; null: not a sequence.
   std::map<std::string, visibility::FrameMemory>* memories = nullptr;
   /// A method of a group (not requested by name) whose first run takes longer is left out, with a warning.
   double most_seconds = std::numeric_limits<double>::infinity();
   std::optional<float> exposure;  ///< of displayed pictures, in stops; nullopt: from the reference's brightness
-  std::vector<std::string> view_arguments = {};  ///< of the program, to see the scene in the live view; for the report
+  std::vector<std::string> view_arguments = {};  ///< arguments of the program that open the live view; for the report
 };
 
 /// e = V − V of the reference at each pixel under the first light, for each entry; NaN for pixels that are not judged.
 /// Empty: the entry failed.
 using EntryErrors = std::vector<std::vector<float>>;
 
-/// Returns the memory that a comparison needs for each triangle of a copy, beside the scene's: the scene floats, and
-/// the most of what the reference and methods that were named take. Methods of a group that do not fit are left out
-/// later.
+/// Returns the memory that a comparison needs for each triangle of a copy, in addition to the scene itself: the scene
+/// floats, and the largest need among the reference and the methods requested by name. Methods of a group that do not
+/// fit are left out later.
 std::uint64_t bytes_per_copy(const ComparisonOptions& options);
 
 /// Runs the reference, then each method on the same view samples, and writes all of DIR. Every light is judged; numbers

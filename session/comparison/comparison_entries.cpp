@@ -182,7 +182,7 @@ void require_explainable(std::span<const MethodEntry> methods) {
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options) {
   const visibility::MethodDescription& method = entry.description;
   const bool is_judge = is_reference || method.family == visibility::Family::reference;
-  // Areas of a judge are not timed against others, and may take minutes.
+  // The times of a reference's areas are not compared, and may be minutes: one run.
   if (is_judge && method.output != visibility::Output::mask) return {.lights = {}, .runs = 1};
   RunPlan plan{.lights = {}, .runs = 5, .run_seconds = 2, .discard_first = true};
   if (options.runs != 0) {

@@ -20,7 +20,7 @@ struct Entry {
   std::string label;
   visibility::MethodDescription description;
   visibility::MethodOptions options;
-  bool from_group = false;  ///< requested with others, not by name
+  bool from_group = false;  ///< requested as a member of a group, not by name
 };
 
 /// Returns the methods with the options given for all of them (ComparisonOptions::method_options). Throws UsageError

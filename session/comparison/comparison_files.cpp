@@ -12,7 +12,7 @@
 namespace penumbra::session {
 
 std::string file_stem(std::string label) {
-  constexpr std::size_t kLongest = 200, kKept = 180;  // of 255 bytes, with room for an ending and a temporary name
+  constexpr std::size_t kLongest = 200, kKept = 180;  // a whole name has at most 255 bytes, also a temporary one
   std::ranges::replace(label, ':', ',');
   if (label.size() <= kLongest) return label;
   std::uint64_t digest = 0xcbf29ce484222325;  // FNV-1a, the same on every machine

@@ -36,8 +36,8 @@ class ComparisonFiles {
     return out_ / (file_stem(label) + ending);
   }
 
-  /// Removes the files of an entry that failed: left by an earlier run, or by an incomplete one, and misleading beside
-  /// the report. Other files are not touched. Returns messages about files that could not be removed.
+  /// Removes the files of an entry that failed. They were left by an earlier or incomplete run, and would be misleading
+  /// next to the report. Other files are not touched. Returns messages about files that could not be removed.
   [[nodiscard]] std::vector<std::string> remove(const std::string& label) const;
 
  private:

@@ -25,12 +25,13 @@ struct BudgetQuestion {
   const Session& session;
   const visibility::Light& light;            ///< one of the session's lights
   const LightTruth& truth;                   ///< of this light; must have judged pixels
-  const visibility::SampleRequest& samples;  ///< pattern and seed for runs with a number of light samples of their own
+  const visibility::SampleRequest& samples;  ///< pattern and seed for runs with another number of light samples
   const Entry& entry;                        ///< its description must have repairs
-  std::span<const float> visibility;         ///< with the requested options, of each pixel
+  std::span<const float> visibility;         ///< V of each pixel with the requested options
 };
 
-/// V by the runs of repairs under one light, for its judged pixels: repairs of several methods may be the same run.
+/// V from the runs of repairs under one light, for its judged pixels. Kept, since repairs of several methods may need
+/// the same run.
 struct BudgetRuns {
   /// Method, options, parts of the light, light samples.
   using Key = std::tuple<std::string, visibility::MethodOptions, std::uint32_t, std::uint32_t>;
@@ -43,7 +44,7 @@ struct BudgetAnswer {
 };
 
 /// Runs the repairs of the method's description one after another. A run that the device or the scene rejects is noted
-/// and left out, and one in `runs` is not repeated. `limit`: of the pictures' scale.
+/// and left out, and one in `runs` is not repeated. `limit`: end of the pictures' scale.
 BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, const render::Machine& machine,
                                   BudgetRuns& runs, Progress& progress);
 

@@ -21,7 +21,8 @@ void sort_by_visibility(LightTruth& truth) {
   }
 }
 
-/// Finds the objects whose triangles hide one piece of the light, or a light in one piece.
+/// Finds the objects whose triangles hide the light, or one piece of a light in several pieces, and adds them to
+/// `hidden`.
 void sort_by_object(const Session& session, std::size_t light, std::span<const std::uint32_t> shadowed,
                     std::vector<reference::HiddenBy>& hidden) {
   const auto found =

@@ -23,7 +23,7 @@ struct PenumbraSizes {
   std::vector<float> contact_pixels;  ///< distance, in pixels, of the nearest object that hides some of the light
 };
 
-/// Data with which methods are compared under one of whole_lights.
+/// Data with which methods are compared under one light of whole_lights().
 struct LightTruth {
   std::vector<std::uint32_t> judged, horizon;  ///< pixels over which errors are computed
   std::vector<float> reference;                ///< V of each pixel

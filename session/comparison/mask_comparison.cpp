@@ -28,7 +28,7 @@ void MaskComparison::add(const TileResult& result) {
     if (seen_++ % stride_ != 0) return;
     kept_.push_back({static_cast<std::uint32_t>(first) + pixel, sample, visible});
     if (kept_.size() <= question_.most_decided) return;
-    // Keeps every second pair of too many, and from now on half as many.
+    // There are too many pairs: keeps every second one, and from now on adds only half as many.
     stride_ *= 2;
     for (std::size_t i = 0; 2 * i < kept_.size(); ++i) kept_[i] = kept_[2 * i];
     kept_.resize((kept_.size() + 1) / 2);

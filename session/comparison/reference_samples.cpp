@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light samples of a reference that has any: the methods' own, or a number of its own in the same pattern.
+// Light samples of a reference that uses them: the methods' own, or a different number in the same pattern.
 
 #include "session/comparison/reference_samples.hpp"
 
@@ -13,7 +13,7 @@
 namespace penumbra::session {
 
 visibility::SampleRequest reference_samples(const RunOptions& run, const std::string& wanted) {
-  const visibility::SampleRequest own = parse_light_samples(run);  // throws with its options' own names
+  const visibility::SampleRequest own = parse_light_samples(run);  // errors name the methods' options
   if (wanted == "same") return own;
   RunOptions reference = run;
   reference.light_samples = wanted;

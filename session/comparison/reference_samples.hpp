@@ -10,7 +10,7 @@
 
 namespace penumbra::session {
 
-/// Returns the light samples of the reference: the methods' own (`wanted` is "same"), or a number of its own, by the
+/// Returns the light samples of the reference: the methods' own (`wanted` is "same"), or a different number, by the
 /// same pattern. Throws UsageError for any other text.
 visibility::SampleRequest reference_samples(const RunOptions& run, const std::string& wanted);
 

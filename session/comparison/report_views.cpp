@@ -70,7 +70,7 @@ std::vector<compare::ReportLight> report_lights(const Session& session, std::spa
       continue;
     }
     shown.round = is_round(light.kind);
-    if (!is_circle(light.kind) && !is_polygon(light.kind)) {  // sides or axes of two lengths
+    if (!is_circle(light.kind) && !is_polygon(light.kind)) {  // rectangle or ellipse: two lengths
       const visibility::LightFrame frame = visibility::light_frame(light);
       shown.aspect = glm::length(frame.u) / glm::length(frame.v);
     }

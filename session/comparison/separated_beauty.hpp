@@ -12,7 +12,7 @@
 namespace penumbra::session {
 
 /// Returns the linear beauty computed from V of the reference alone, V · ∫G, light by light (compare::Separation).
-/// Empty if a light is cut in pieces, whose own V are unknown.
+/// Empty if a light is divided into pieces, since V of each piece is unknown.
 std::vector<glm::vec3> separated_beauty(const Session& session, std::span<const LightTruth> truths);
 
 }  // namespace penumbra::session

@@ -23,7 +23,7 @@ namespace penumbra::session {
 namespace {
 
 constexpr std::uint32_t kUnusedPosition = std::numeric_limits<std::uint32_t>::max();
-/// Memory for each triangle, beside the scene: measured on a sphere of a million triangles, and rounded down.
+/// Memory for each triangle, in addition to the scene: measured on a sphere of a million triangles, and rounded down.
 constexpr std::uint64_t kBytesPerTriangle = 200;
 
 InspectedMesh read_scene(const std::filesystem::path& file, bool allow_outside, const std::function<void()>* step) {

@@ -36,7 +36,7 @@ struct InspectedMesh {
 InspectedMesh read_inspected(const std::filesystem::path& file, bool allow_outside,
                              const std::function<void()>* step = nullptr);
 
-/// Objects of a soup, each as a soup of its own. Borrows the soup.
+/// Objects of a soup, each as a separate soup. Refers to the whole soup.
 class ObjectParts {
  public:
   ObjectParts(const mesh::TriangleSoup& soup, std::size_t objects);

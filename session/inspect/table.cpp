@@ -60,7 +60,7 @@ std::string row(std::string_view label, std::string_view value, std::string_view
 
 std::string place_line(const mesh::DefectPlace& place, const ObjectReport& object) {
   std::string line = "      at";
-  // of two triangles one corner is sufficient
+  // for two triangles one corner is sufficient
   const std::size_t points = place.points.size() > 3 ? 1 : place.points.size();
   for (std::size_t i = 0; i < points; ++i) line += (i == 0 ? " " : " – ") + point_text(place.points[i]);
   line += place.triangles.size() == 1 ? ": triangle" : ": triangles";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A method that composes pictures of chosen view samples for another method and puts the answers back in their places.
-// View samples that follow one another fill regions of 16 × 16 pixels in Z order, as engines take them.
+// Consecutive view samples fill regions of 16 × 16 pixels in Z order, which engines evaluate together.
 
 #include "session/pictures/asked_areas.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 using visibility::Tile;
 using visibility::ViewSamples;
 
-/// Size of a region: engines take regions of this many pixels along each side, with pixels in Z order.
+/// Size of a region: engines evaluate regions of this many pixels along each side, with pixels in Z order.
 constexpr std::size_t kRegion = 16, kRegionPixels = kRegion * kRegion, kRegionsAcross = 64;
 
 /// Compacts the bits at even places.

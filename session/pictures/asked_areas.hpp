@@ -20,9 +20,9 @@ struct AreaAnswer {
   glm::dvec3 form_factor{0};
 };
 
-/// A method of Output::radiance that takes its answers from another method. It asks the other method about view samples
-/// in pictures that it composes, and returns the other method's answers bit for bit. The other method must outlive this
-/// object. For one thread at a time.
+/// A method of Output::radiance that takes its answers from another method. It composes pictures of view samples for
+/// the other method, and returns the other method's answers bit for bit. The other method must outlive this object. For
+/// one thread at a time.
 class AskedAreas : public visibility::Method {
  public:
   [[nodiscard]] const visibility::MethodDescription& description() const final { return method_.description(); }
@@ -45,12 +45,12 @@ class AskedAreas : public visibility::Method {
   explicit AskedAreas(visibility::Method& method);
 
   /// Answers some of a tile's view samples, numbered from its first one, and returns the others in the order in which
-  /// to ask about them: neighbours in space follow one another. Background is answered already.
+  /// the other method shall evaluate them: neighbours in space follow one another. Background is already answered.
   virtual std::vector<std::size_t> answer(const visibility::Tile& tile, std::span<AreaAnswer> answers) = 0;
 
   /// Receives all answers of a tile once they are complete.
   virtual void keep(const visibility::Tile& /*tile*/, std::span<const AreaAnswer> /*answers*/) {}
-  /// Returns the pixels of a picture, region by region as engines take them; in each region neighbours follow one
+  /// Returns the pixels of a picture, region by region as engines evaluate them; in each region neighbours follow one
   /// another.
   static std::vector<std::size_t> in_regions(std::uint32_t width, std::uint32_t height);
 
@@ -61,18 +61,18 @@ class AskedAreas : public visibility::Method {
   void count(const std::string& name, std::uint64_t more) { counters_[name] += more; }
 
  private:
-  /// View samples of the picture in the given order, packed into regions as engines take them.
+  /// View samples of the picture in the given order, packed into regions as engines evaluate them.
   struct Packed {
     visibility::ViewSamples samples;
     std::vector<std::size_t> at;  ///< position of each view sample in the packed picture
   };
   [[nodiscard]] Packed packed(std::span<const std::size_t> which) const;
-  /// Returns the answers for the tile last evaluated, which begins with view sample `first`.
+  /// Lets the other method answer the `open` view samples of the current tile, which begins with view sample `first`.
   void ask_open(std::vector<std::size_t> open, std::size_t first);
 
   visibility::Method& method_;
   const visibility::ViewSamples* samples_ = nullptr;
-  std::vector<AreaAnswer> answers_;  // for the tile last evaluated
+  std::vector<AreaAnswer> answers_;  // for the last evaluated tile
   std::map<std::string, std::uint64_t> counters_;
 };
 

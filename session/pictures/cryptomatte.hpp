@@ -34,7 +34,7 @@ class Cryptomatte {
   /// Makes a layer for one view sample a pixel: rank 0 alone, coverage 1, or 0 for background; rank 1 is empty.
   /// `name_of` must stay valid for the lifetime of this object. Equal names are one matte.
   Cryptomatte(std::string layer, std::span<const std::string> names, NameOf name_of);
-  /// Makes a layer of the six mattes with the largest coverage of each pixel; other mattes of a pixel are left out.
+  /// Makes a layer of the six mattes with the largest coverage in each pixel; other mattes of a pixel are left out.
   /// `shares`, which are settled, must outlive this object.
   Cryptomatte(std::string layer, const MatteShares& shares);
 

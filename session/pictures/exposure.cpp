@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses --exposure, and reads the stops that an earlier picture's header keeps, so that a resumed sequence has one
-// brightness.
+// Parses --exposure, and reads the stops that an earlier picture's header keeps, so that a resumed sequence
+// keeps its brightness.
 
 #include "session/pictures/exposure.hpp"
 

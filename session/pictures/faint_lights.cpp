@@ -24,7 +24,7 @@ namespace {
 using visibility::Light;
 using visibility::PixelClass;
 
-/// View samples of a task: their numbers for a thousand lights fit a processor's own cache.
+/// Number of view samples of a task: their data for a thousand lights fit a core's own cache.
 constexpr std::size_t kGrain = 128;
 
 /// Returns whether the light of a pixel of this class is the whole unshadowed light times V.
@@ -46,7 +46,7 @@ struct Counts {
 struct Buffers {
   std::vector<std::uint32_t> which;  // view samples
   std::vector<double> form_factors;
-  std::vector<double> arriving;           // of each light, each view sample: over the light's radiance
+  std::vector<double> arriving;           // of each light, each view sample: divided by the radiance
   std::vector<glm::dvec3> total, hidden;  // of each view sample
 };
 

@@ -13,11 +13,11 @@ namespace penumbra::session {
 
 /// View samples at which lights are left out because they are faint (--light-cutoff).
 struct FaintLights {
-  /// For each light, for each view sample, 1: left out (RunPlan::dark). Empty for a light that is left out nowhere;
-  /// empty if no light is.
+  /// For each light, for each view sample, 1: left out (RunPlan::dark). Empty for a light that is left out nowhere; the
+  /// outer list is empty if no light is left out.
   std::vector<std::vector<std::uint8_t>> dark;
-  std::uint64_t pairs = 0;   ///< of a view sample and a whole light that is left out and would arrive if nothing hid it
-  double largest_share = 0;  ///< largest unshadowed light left out of a view sample, over all of its unshadowed light
+  std::uint64_t pairs = 0;   ///< pairs of view sample and left-out light that would arrive if nothing hid it
+  double largest_share = 0;  ///< largest left-out share of a view sample's unshadowed light, of R, G and B
 };
 
 /// Finds the lights that are faint at a view sample: in each of R, G and B, the light's unshadowed light is at most

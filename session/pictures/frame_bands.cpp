@@ -64,14 +64,14 @@ void FrameRenderer::render_passing(const scenes::Scene& scene, const std::filesy
   const auto leave = [&] {
     for (Kept& kept : kept_) {
       visibility::pass(*kept.method, nullptr);
-      kept.prepared = nullptr;  // what was not seen may move until the next picture
+      kept.prepared = nullptr;  // unseen triangles may move before the next picture
     }
     picture_.all = nullptr;
     maker_.look_away();
   };
   try {
     run_methods(bits);
-  } catch (...) {  // a live view's picture that is given up
+  } catch (...) {  // the live view cancelled the picture
     leave();
     throw;
   }
@@ -120,7 +120,7 @@ void FrameRenderer::render_in_bands(const scenes::Scene& scene) {
     const std::uint64_t wanted = band.row_count * kMostTriangles / triangles;
     rows = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(wanted, 1, std::uint64_t{2} * band.row_count));
   }
-  // Outputs of surfaces need the visible triangles alone.
+  // Outputs of surfaces need only the visible triangles.
   if (parts > 1) {
     maker_.show_viewed(picture_.frame.camera, progress_);
     note_seconds(maker_);

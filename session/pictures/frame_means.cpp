@@ -23,8 +23,8 @@ namespace {
 constexpr std::uint32_t kFewestRows = 16;  ///< pixel rows of a band: its neighbours' rows are evaluated, too
 
 /// Pixel rows on either side of a band whose interpolated answers may differ from those of the whole picture
-/// (InterpolatedAreas): a view sample's cell has corners up to one row away, the slope at a corner takes the curvature
-/// of its neighbours, one row farther, and a curvature takes those neighbours' neighbours.
+/// (InterpolatedAreas): a view sample's cell has corners up to one row away, the slope at a corner needs the curvature
+/// at its neighbours, one row farther, and that curvature needs their neighbours, another row farther.
 constexpr std::uint32_t kRowsInterpolated = 3;
 
 }  // namespace
@@ -100,7 +100,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
     if (picture_.in_bands)
       picture_.own_rows = {band.pixels.first_row * side - band.samples.first_row, band.pixels.row_count * side};
     MethodRun before = std::exchange(picture_.run, {});
-    before.visibility.clear();  // the last band's view samples, which are in the mean
+    before.visibility.clear();  // V of the last band, which is already in the mean
     picture_.beauty.clear();
     run_methods({});
     const Stopwatch watch;
@@ -157,7 +157,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
   picture_.own_rows.reset();
   picture_.mattes->objects.settle();
   picture_.mattes->materials.settle();
-  // The mean has all that the view samples were for.
+  // The results of the view samples are now in the mean.
   picture_.run.visibility.clear();
   picture_.beauty.clear();
   picture_.alpha.clear();

@@ -26,7 +26,7 @@
 namespace penumbra::session {
 namespace {
 
-/// Returns the view samples that are marked in one of both (RunPlan::dark).
+/// Returns the view samples that are marked in either of the two (RunPlan::dark).
 std::vector<std::vector<std::uint8_t>> either(std::vector<std::vector<std::uint8_t>> one,
                                               const std::vector<std::vector<std::uint8_t>>& other) {
   if (one.empty() || other.empty()) return one.empty() ? other : one;
@@ -53,7 +53,7 @@ bool any_seen_openly(std::span<const visibility::PixelClass> classes, std::span<
 }  // namespace
 
 /// Chooses the methods. Area methods do not handle translucent surfaces and holes: their result is right only where
-/// none of these is in between.
+/// none of these is between view sample and light.
 void FrameRenderer::choose_methods(const Session& session) {
   const std::vector<visibility::Light>& lights = session.lights;
   plan_.lights = lights;
@@ -254,7 +254,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     plan.shades = true;
     visibility::remember(*kept.method, memory());
     visibility::pass(*kept.method, picture_.all);
-    std::unique_ptr<visibility::Method> around;  // asks the method about fewer view samples, or in another order
+    std::unique_ptr<visibility::Method> around;  // passes on fewer view samples, or in another order
     if (method.description.gives_area() && lit().camera.lens)
       around = std::make_unique<LensAreas>(*kept.method);
     else if (method.description.gives_area() && picture_.frame.pixel_side > 1 && picture_.frame.pixel_tolerance > 0)
@@ -263,7 +263,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     else if (method.description.gives_area() && picture_.still && !picture_.layers && !plan.filtered_alone &&
              faint.dark.empty())
       around = std::make_unique<StillAreas>(*kept.method, *picture_.still, plan.lights);
-    plan.dark = around ? faint.dark : dark;  // beside a cone, interpolation reads V
+    plan.dark = around ? faint.dark : dark;  // interpolation needs V outside spot cones, too
     MethodRun run = run_method(
         around ? *around : *kept.method, lit(), plan,
         [&](const TileResult& tile) {
@@ -287,7 +287,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
   for (const std::vector<std::size_t>& lights : same_methods(plan_.chosen)) {
     const visibility::MethodOptions changed =
         run_with(plan_.chosen[lights.front()], {.lights = plan_.lights, .only = lights});
-    // For labels; the method itself is kept under the options that were asked for.
+    // For labels; the method itself is kept under the requested options.
     for (const std::size_t light : lights) plan_.chosen[light].options.insert(changed.begin(), changed.end());
   }
   std::vector<std::size_t> in_part;
@@ -300,7 +300,7 @@ MethodRun FrameRenderer::run_lights(BeautyAccumulator& beauty, BitsOutput* bits)
     done_.with.insert_or_assign(plan_.lights[i].name, *plan_.counting[i]);
     all.counters["viewSamplesCounted"] +=
         static_cast<std::uint64_t>(std::ranges::count(lit().filtered[i], std::uint8_t{1}));
-    if (!plan_.lights[i].filtered_by.empty()) continue;  // not done by areas
+    if (!plan_.lights[i].filtered_by.empty()) continue;  // this light is not computed by areas
     done_.in_part.insert(plan_.lights[i].name);
     in_part.push_back(i);
     with.push_back(*plan_.counting[i]);

@@ -36,7 +36,7 @@ namespace penumbra::session {
 /// Scene of a picture, and the time of reading it.
 struct PictureScene {
   scenes::Scene scene;
-  scenes::Instances instances = {};  ///< those that stay without copies
+  scenes::Instances instances = {};  ///< instances that have no copies
   double seconds = 0;
   std::shared_ptr<scenes::ScenesAhead> ahead = {};  ///< the picture's other moments, read with the scene; null: none
 };
@@ -53,13 +53,14 @@ struct Frame {
   std::vector<std::function<PictureScene()>> moments = {};
   /// Instances of the scene, which are not in its soup; null: none.
   const scenes::Instances* instances = nullptr;
-  /// The scene is without_meshes(), with the meshes of the last picture; only for one moment and pixels' centres.
+  /// The scene was made by without_meshes() and uses the meshes of the last picture; only for one moment and pixels'
+  /// centres.
   bool same_meshes = false;
   /// A light is left out of view samples where its unshadowed light is at most this share of all lights' (FaintLights);
   /// 0: nowhere.
   double light_cutoff = 0;
   bool keeps_masks = false;  ///< fill RenderedFrame::masks; only for a picture of one moment and pixels' centres
-  /// View samples of a pixel are evaluated in bands of about so many (FrameRenderer::mean_bands).
+  /// Number of view samples of a band, approximately, if a pixel has several (FrameRenderer::mean_bands).
   std::uint64_t band_samples = std::uint64_t{1} << 21;
   /// Largest number of rows that methods evaluate at once (RunPlan::band_rows).
   std::uint32_t band_rows = std::numeric_limits<std::uint32_t>::max();
@@ -75,7 +76,7 @@ struct RenderedFrame {
   std::vector<std::vector<std::uint32_t>> masks;
 };
 
-/// View samples that are points on surfaces, and a function applied to their numbers before writing.
+/// View samples that are points on surfaces, and a function that is applied to their results before these are written.
 struct SurfaceView {
   ViewFinder finder;
   std::function<void(RenderedFrame&, const Session&)> finish;
@@ -162,9 +163,10 @@ class FrameRenderer {
   [[nodiscard]] bool shows_in_bands(const std::filesystem::path& bits) const;
   /// Renders bands of rows, each with as many rows as memory allows for the part of the scene that matters to them.
   void render_in_bands(const scenes::Scene& scene);
-  /// Returns whether the picture is of a scene with instances whose triangles all pass the method.
+  /// Returns whether the picture is of a scene with instances, and the method can be given all triangles apart from the
+  /// scene (session::passes_triangles).
   [[nodiscard]] bool passes_triangles() const;
-  /// Renders what pixels see, by methods that all triangles pass.
+  /// Renders a scene that contains only what pixels see; the method is given all triangles apart from it.
   void render_passing(const scenes::Scene& scene, const std::filesystem::path& bits);
   /// Throws UsageError for requested layers that the current picture will not have.
   void check_wanted_layers() const;
@@ -230,8 +232,8 @@ class FrameRenderer {
     MethodRun run;
     std::vector<std::vector<glm::vec3>> beauty;     // of each light
     bool in_bands = false;                          // the current view samples are those of some rows alone
-    std::optional<visibility::Tile> own_rows;       // of them, those that no other band has; nullopt: all
-    const visibility::AllTriangles* all = nullptr;  // the session has a part of them, which all pass methods
+    std::optional<visibility::Tile> own_rows;       // those of these rows that no other band has; nullopt: all
+    const visibility::AllTriangles* all = nullptr;  // given to methods if the session has only a part; else null
     bool layers = false;                            // translucent surfaces are evaluated, not the surfaces behind them
     std::vector<std::vector<std::uint32_t>> masks;  // of each light
     std::vector<float> alpha;                       // of each pixel
@@ -256,7 +258,7 @@ class FrameRenderer {
   std::optional<Fine> fine_;
   std::vector<Kept> kept_;
   bool expects_frames_ = false;
-  std::optional<std::map<std::string, visibility::FrameMemory>> memories_;  // by camera; nullopt: pictures are apart
+  std::optional<std::map<std::string, visibility::FrameMemory>> memories_;  // by camera; nullopt: not remembered
   std::optional<SurfaceView> surface_;                                      // nullopt: view samples of a camera
   TevPictures* tev_ = nullptr;                                              // nullptr: pictures are only written
   Said said_;

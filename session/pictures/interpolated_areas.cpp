@@ -60,7 +60,7 @@ void InterpolatedAreas::prepare_view(const ViewSamples& samples) {
 }
 
 std::uint32_t InterpolatedAreas::max_tile_rows() const {
-  constexpr std::uint32_t kMostSamples = 1u << 18;  // whose answers, 32 bytes each, stay in the processor's caches
+  constexpr std::uint32_t kMostSamples = 1u << 18;  // their answers, 32 bytes each, fit the processor's caches
   return std::max(std::min(AskedAreas::max_tile_rows(), kMostSamples / fine_->width) / side_, 1u) * side_;
 }
 
@@ -103,8 +103,8 @@ void InterpolatedAreas::look_at_corners() {
   has_corners_ = true;
 }
 
-/// Returns the second difference at a corner, as an error of V: of V itself, or of the arriving light over the
-/// unoccluded light.
+/// Returns the second difference at a corner, as an error of V: that of V, or that of the arriving light divided by the
+/// unoccluded light, whichever is larger.
 float InterpolatedAreas::bend(std::size_t before, std::size_t at, std::size_t after, std::uint32_t step) const {
   const auto x = static_cast<std::uint32_t>(at % width_), y = static_cast<std::uint32_t>(at / width_);
   const std::size_t here = corner_of(x, y);
@@ -138,8 +138,8 @@ void InterpolatedAreas::find_cells() {
   });
 }
 
-/// Returns whether each surface in the cell that begins at a view sample is far from the others, in pixels of their
-/// size there.
+/// Returns whether each surface in the cell that begins at this view sample is far from the others, measured by the
+/// size of a pixel there.
 bool InterpolatedAreas::are_apart(std::size_t first) const {
   std::vector<std::size_t> shown;  // background is far from every surface
   for (std::uint32_t y = 0; y <= side_; ++y) {
@@ -148,7 +148,7 @@ bool InterpolatedAreas::are_apart(std::size_t first) const {
       if (fine_->triangle[at] != ViewSamples::kBackground) shown.push_back(at);
     }
   }
-  float same = std::numeric_limits<float>::infinity(), other = same;  // shortest distances
+  float same = std::numeric_limits<float>::infinity(), other = same;  // shortest distances: on one surface, on two
   for (std::size_t i = 0; i < shown.size(); ++i) {
     for (std::size_t j = i + 1; j < shown.size(); ++j) {
       float& shortest = on_one_surface(shown[i], shown[j]) ? same : other;
@@ -182,8 +182,8 @@ std::optional<InterpolatedAreas::Slope> InterpolatedAreas::slope(std::uint32_t x
     std::size_t from, to;  // indices of corners
     float bend;
   };
-  // Slope between the neighbours on both sides; or to the one on the surface, if the one behind it is also on the
-  // surface.
+  // The slope between the neighbours on both sides if both are on the surface; else the slope to one neighbour, if it
+  // and the next corner beyond it are on the surface.
   const auto along = [&](std::size_t step, bool has_before, bool has_after, float Bend::*bend) -> std::optional<Along> {
     if (const float here = bends_[at].*bend; here >= 0) return Along{at - step, at + step, here};
     if (has_before && bends_[at - step].*bend >= 0) return Along{at - step, at, bends_[at - step].*bend};

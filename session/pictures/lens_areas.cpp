@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks for exact areas of blurred surfaces in the order of view samples along a Z curve in space, 21 bits an axis.
+// Evaluates exact areas on blurred surfaces in the order of view samples along a Z curve in space, with 21 bits per
+// axis.
 
 #include "session/pictures/lens_areas.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 
 using visibility::ViewSamples;
 
-/// Spreads 21 bits, with two zeros between each two.
+/// Spreads 21 bits, with two zeros between neighbouring bits.
 std::uint64_t spread_bits(std::uint64_t bits) {
   bits = (bits | bits << 32) & 0x001f00000000ffffu;
   bits = (bits | bits << 16) & 0x001f0000ff0000ffu;

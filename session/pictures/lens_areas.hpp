@@ -6,8 +6,8 @@
 namespace penumbra::session {
 
 /// Areas at view samples through a lens. On blurred surfaces the view samples of neighbouring pixels are far apart, so
-/// that engines, which share work among neighbours, share little. Therefore the method is asked in an order of
-/// positions in space.
+/// that engines, which share work among neighbours, share little. Therefore the method is given the view samples in an
+/// order of their positions in space.
 class LensAreas final : public AskedAreas {
  public:
   explicit LensAreas(visibility::Method& method) : AskedAreas(method) {}

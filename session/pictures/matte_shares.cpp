@@ -24,7 +24,7 @@ void add_share(std::vector<Share>& shares, std::size_t first, std::uint32_t name
   shares.push_back({name, static_cast<float>(part)});
 }
 
-/// Rows and columns of a block of view samples, and how many view samples a row of the picture has.
+/// Rows and columns of a block of view samples; `step`: number of view samples in a row of the picture.
 struct Block {
   std::size_t rows, columns, step;
 };

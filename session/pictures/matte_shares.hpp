@@ -45,8 +45,8 @@ class MatteShares {
  private:
   static constexpr std::uint32_t kNothing = Surfaces::kNothing;  ///< comes last in settled shares
 
-  /// Row of pixels: the shares of pixel x, at least one, are shares[ends[x − 1]] to before shares[ends[x]]; running
-  /// sums until settle().
+  /// Row of pixels: the shares of pixel x, at least one, begin at shares[ends[x − 1]] and end before shares[ends[x]].
+  /// Their parts are running sums until settle().
   struct Row {
     std::vector<std::uint32_t> ends;
     std::vector<Share> shares;

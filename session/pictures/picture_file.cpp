@@ -105,7 +105,7 @@ class Channels {
   bool half_;
 };
 
-/// Returns the picture's number of a name: from 1; 0: background.
+/// Returns the number by which the picture identifies a name: 1 or more; 0 for background.
 float picture_number(std::uint32_t index) {
   return index == Surfaces::kNothing ? 0.0f : static_cast<float>(index) + 1;
 }

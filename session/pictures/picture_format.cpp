@@ -40,8 +40,8 @@ constexpr std::array kOwnLayers = {"",  // channels without a layer
                                    "rgba",
                                    "other"};
 
-/// Endings of a light's layers: all its channels, and on request each of two parts for Blender's compositor, which
-/// supports one kind of channels in a layer: of R, G, B and V it would show V as R.
+/// Endings of a light's layers: the layer with all channels, and on request one with V and one with R G B. These are
+/// for Blender's compositor, which supports only one kind of channel in a layer: of R, G, B and V it would show V as R.
 constexpr std::array kEndings = {"", "_V", "_light"};
 
 /// Returns the first bytes of a UTF-8 text, at most `most`, in whole characters.
@@ -119,7 +119,7 @@ std::vector<std::string> layer_names(std::span<const visibility::Light> lights) 
     for (const char* const end : kEndings) taken.insert(name + end);
     names[light] = std::move(name);
   };
-  // Names that can stay come first: what other lights are called does not change them.
+  // Names that can stay come first, so that they do not depend on the names of other lights.
   for (std::size_t i = 0; i < wholes.size(); ++i) {
     const bool stays = wholes[i] == cut(without_dots(wholes[i]), kLongestLayer);
     if (stays && !is_taken(wholes[i])) take(i, wholes[i]);

@@ -14,10 +14,11 @@
 
 namespace penumbra::session {
 
-/// Returns the names of whole lights' layers. A light's own name stays if it can be a layer: of two that differ by "_V"
-/// or "_light", which are a light's further layers, the first. Then the other lights get their names: with dots and
-/// slashes, which create nested layers, and control characters as "_", cut where longer than hosts support
-/// (kLongestLayer), and with "_2", "_3" and so on if the name is reserved or taken.
+/// Returns the names of whole lights' layers. A light keeps its own name if that can be a layer. Of two names that
+/// differ only by "_V" or "_light", the endings of a light's further layers, only the first is kept. Then the other
+/// lights get changed names: dots and slashes, which create nested layers, and control characters become "_"; names
+/// longer than hosts support (kLongestLayer) are cut; and "_2", "_3" and so on is added if the name is reserved or
+/// taken.
 std::vector<std::string> layer_names(std::span<const visibility::Light> lights);
 
 /// Blender keeps 50 bytes of a pass' name, including "_light".

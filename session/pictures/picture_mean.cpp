@@ -18,8 +18,8 @@ namespace {
 /// that the sum over equal values v is v times the sum of weights, to the bit where v is 0 or 1.
 class WeightedRow {
  public:
-  /// `first`: the row's first row of view samples, counted from the first given one. All others must outlive this
-  /// object.
+  /// `first`: the row's first row of view samples, counted from the first given one. All other arguments must outlive
+  /// this object.
   WeightedRow(const FilterTaps& down, std::span<const FilterTaps> across, std::size_t first, std::uint32_t side)
       : down_(down), across_(across), first_(first), side_(side) {}
 

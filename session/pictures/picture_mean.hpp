@@ -15,7 +15,7 @@
 
 namespace penumbra::session {
 
-/// Rows of a picture, and where the rows of view samples begin that are given for them.
+/// Rows of a picture, and the first row of the view samples that are given for them.
 struct PictureBand {
   visibility::Tile rows;               ///< of pixels
   std::uint32_t first_sample_row = 0;  ///< of the whole picture's view samples
@@ -27,7 +27,7 @@ class PictureMean {
   /// How often rows are added.
   enum class Adds : std::uint8_t {
     often,  ///< sums are kept in double
-    once,   ///< each row is added once: its means are kept, in less than half of the memory, the same bits
+    once,   ///< each row is added once: only its means are kept, with the same bits in less than half of the memory
   };
   /// Size in pixels.
   PictureMean(std::uint32_t width, std::uint32_t height, const PixelFilter& filter = {}, Adds adds = Adds::often);
@@ -56,7 +56,7 @@ class PictureMean {
   Adds adds_;
   std::vector<std::string> lights_;
   /// Sums for each pixel, in double, row by row of its view samples, independent of the number of cores. For rows that
-  /// are added once there are means alone, divided in double and rounded.
+  /// are added once, only the means are kept, divided in double and rounded.
   struct Sums {
     std::vector<double> shares, alpha;
     std::vector<std::vector<double>> visibility;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads the scene of a picture with the lens that the options ask for, makes copies of instances where the method needs
-// them, and times all of this.
+// Reads the scene of a picture with the requested lens, makes copies of instances where the method needs them, and
+// measures the time of all this.
 
 #include "session/pictures/picture_scene.hpp"
 
@@ -31,7 +31,7 @@ std::optional<Size> size_of(const scenes::Scene& scene, const std::string& camer
   return picture_size(scene, *found);
 }
 
-/// Files of --moment, read one after the other, each while the one before it is in use.
+/// Files of --moment, read one after the other, each while the previous one is in use.
 class MomentFiles {
  public:
   MomentFiles(const PictureOptions& options, const PictureRequest& request, const scenes::Scene& own)
@@ -55,7 +55,7 @@ class MomentFiles {
     RunOptions run = options_.run;
     run.scene = options_.moments[moment];
     PictureScene read = read_picture_scene(run, std::nullopt, request_);
-    const auto size = size_of(read.scene, run.camera);  // a camera that is not there is reported by the session
+    const auto size = size_of(read.scene, run.camera);  // a missing camera is reported by the session
     if (size_ && size && size != size_)
       throw InputError("{}: a picture of {}x{} pixels, where SCENE's has {}x{}; --size says how many all have",
                        run.scene.string(), size->first, size->second, size_->first, size_->second);
@@ -89,8 +89,8 @@ PictureScene read_picture_scene(const RunOptions& run, std::optional<double> tim
 
 std::vector<std::function<PictureScene()>> moments_in_files(const PictureOptions& options,
                                                             const PictureRequest& request, PictureScene& own) {
-  // A scene with instances has positions besides those of the soup. Its parts are evaluated again at each moment in any
-  // case.
+  // No common origin for a scene with instances: it has positions outside the soup, and its parts are evaluated again
+  // at each moment in any case.
   if (!options.moments.empty() && !own.scene.origin && own.instances.empty())
     own.scene.origin = scenes::bounds_of(own.scene.soup.positions).middle();
   const auto files = std::make_shared<MomentFiles>(options, request, own.scene);

@@ -19,8 +19,8 @@ PictureScene read_picture_scene(const RunOptions& run, std::optional<double> tim
                                 scenes::ScenesAhead* ahead = nullptr);
 
 /// Returns functions that return the scenes in the files of --moment, for Frame::moments: to be called in their order,
-/// once each. While the caller works on one scene the next file is read, by a process of its own, so memory holds two.
-/// `own`: SCENE as it was read; its origin becomes that of all moments, so that what stands still has the same scene
+/// once each. While the caller works on one scene, a separate process reads the next file, so that memory holds two.
+/// `own`: SCENE as it was read; its origin becomes that of all moments, so that objects at rest have the same scene
 /// floats in each. The other arguments must outlive the functions, which throw as read_picture_scene() does.
 std::vector<std::function<PictureScene()>> moments_in_files(const PictureOptions& options,
                                                             const PictureRequest& request, PictureScene& own);

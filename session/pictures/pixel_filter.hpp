@@ -17,7 +17,7 @@ struct PixelFilter {
   /// filter of that width does.
   double width = 1;
 
-  /// Returns the distance from the centre, in pixels, from which on weights are 0.
+  /// Returns the distance from the centre, in pixels, beyond which weights are 0.
   [[nodiscard]] double reach() const { return kind == Kind::box ? width / 2 : width; }
   /// Returns the weight along one axis, not normalized; `offset` in pixels.
   [[nodiscard]] double share(double offset) const;
@@ -32,8 +32,8 @@ struct FilterTaps {
   std::vector<double> shares;
 };
 
-/// Returns the taps of each of `pixels` in a line with `side` view samples in each, at the middles of equal parts.
-/// There are no samples beyond the line's ends: pixels there have fewer.
+/// Returns the taps of each of `pixels` in a line. Each pixel has `side` view samples, at the middles of its equal
+/// parts. There are no samples beyond the line's ends: pixels there have fewer.
 std::vector<FilterTaps> filter_taps(const PixelFilter& filter, std::size_t pixels, std::size_t side);
 
 }  // namespace penumbra::session

@@ -74,7 +74,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
     throw UsageError("--motion-samples {} needs a frame: --frame or --frames", options.motion_samples);
 }
 
-/// Throws UsageError for other moments beside those of --moment.
+/// Throws UsageError if other options request moments in addition to those of --moment.
 void check_moments(const PictureOptions& options) {
   if (options.moments.empty()) return;
   if (options.frame || !options.frames.empty() || !options.motion_samples.empty() || !options.shutter.empty())
@@ -139,7 +139,7 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
   return InstanceUse::copies;
 }
 
-/// Returns the reason why triangles of the scene cannot pass one after the other; null: there is none.
+/// Returns the reason why a method cannot be given the scene's triangles one after the other; null: there is none.
 const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_samples) {
   const auto is_round = [](const scenes::AreaLight& light) {
     return std::holds_alternative<scenes::Sphere>(light.shape) || std::holds_alternative<scenes::Dome>(light.shape) ||

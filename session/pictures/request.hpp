@@ -26,7 +26,7 @@ struct PictureOptions {
   std::optional<std::string> frame;            ///< for `render` alone
   std::vector<std::filesystem::path> moments;  ///< --moment: files of the scene at moments of the open shutter
   bool skip_existing = false;
-  std::map<std::string, std::string> camera_words;  ///< --camera all: of the scene's cameras, set after the scene is
+  std::map<std::string, std::string> camera_words;  ///< --camera all: camera_words(), set after the scene is
                                                     ///< read
   std::filesystem::path stats, png, bits;
 };
@@ -61,15 +61,15 @@ bool answers_apart(const visibility::MethodDescription& method);
 /// Parses --instances, for a method. Throws UsageError for "shared" with a method that needs all triangles.
 InstanceUse parse_instances(const std::string& text, const MethodWish& wish);
 
-/// Returns whether the scene's instances become copies: if copies are requested or cheap, under a dome of which areas
-/// may be asked, since its directions pass all triangles, and for a method that looks at each triangle once, where the
-/// scene or several view samples a pixel, at one moment or at several, make it look again. Throws UsageError if `use`
-/// is shared and cannot be.
+/// Returns whether the scene's instances become copies: if copies are requested or cheap; under a dome of which areas
+/// may be computed, since its directions reach all triangles; and for a method that is given all triangles once
+/// (passes_triangles), if the scene, or several view samples per pixel or moments, would require them again. Throws
+/// UsageError if `use` is shared and that is not possible.
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
                   const MethodWish& wish, std::uint32_t pixel_samples);
 
-/// Returns the memory that the scene floats and a method need for each triangle of a copy, beside the scene's. Without
-/// lights, which are not known before a scene is read: as for lights of which areas are asked.
+/// Returns the memory that the scene floats and a method need for each triangle of a copy, in addition to the scene's.
+/// `lights`: empty if not yet known; the memory is then that for computing areas.
 std::uint64_t bytes_per_copy(const MethodWish& wish, std::span<const scenes::AreaLight> lights);
 
 /// Parses the options. Throws UsageError; throws InputError if --exposure names a picture without an exposure

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reuses exact areas from one moment of a picture to the next where the surface and the light rest and no moving
-// triangle can be between. Moving triangles are held in at most 64 boxes, enlarged by far more than rounding.
+// Reuses exact areas from one moment of a picture to the next where the surface and the light are at rest and no
+// moving triangle can be between them. Moving triangles are held in at most 64 boxes, enlarged by far more than
+// rounding.
 
 #include "session/pictures/still_areas.hpp"
 
@@ -32,7 +33,8 @@ bool same_surfaces(const SceneFloats& a, const SceneFloats& b) {
          a.receives_shadow == b.receives_shadow && a.emits == b.emits && a.alphas.empty() && b.alphas.empty();
 }
 
-/// Returns whether V of both lights is the same question; false for lights with pictures, where this is unknown.
+/// Returns whether the two lights are the same in all that V depends on; false for lights with pictures, where this is
+/// unknown.
 bool same_light(const Light& a, const Light& b) {
   const auto of = [](const Light& light) {
     return std::tie(light.index, light.piece, light.kind, light.two_sided, light.center, light.center_u, light.center_v,

@@ -15,11 +15,11 @@ namespace penumbra::session {
 /// Differences between one moment of a scene and the next.
 class MovedParts {
  public:
-  /// Constructs without knowledge: everything moves.
+  /// Treats everything as moving.
   MovedParts() = default;
   MovedParts(const visibility::SceneFloats& before, const visibility::SceneFloats& now);
 
-  /// Returns whether the triangle differs from the one before.
+  /// Returns whether the triangle differs from that of the previous moment.
   [[nodiscard]] bool has(std::size_t triangle) const { return !is_known_ || moved_[triangle] != 0; }
   /// Returns whether a moving triangle may be between p and the light, before or now; false only if certainly not.
   [[nodiscard]] bool may_hide(const glm::vec3& p, const visibility::Light& light) const;
@@ -52,10 +52,10 @@ struct StillMoments {
 };
 
 /// Areas at one of several moments. A view sample whose surface and light do not move, with no moving triangle between
-/// them, keeps its answer of the moment before: the bits are the same, since every input is.
+/// them, keeps its answer of the previous moment: the bits are the same, since every input is.
 class StillAreas final : public AskedAreas {
  public:
-  /// The moment's lights are numbered as those of the moment before. All arguments must outlive this object.
+  /// The moment's lights are numbered as those of the previous moment. All arguments must outlive this object.
   StillAreas(visibility::Method& method, StillMoments& moments, std::span<const visibility::Light> lights);
 
   void prepare_light(const visibility::Light& light) override;
@@ -69,7 +69,7 @@ class StillAreas final : public AskedAreas {
   StillMoments& moments_;
   std::span<const visibility::Light> lights_;
   std::size_t light_ = 0;  // index of the light prepared last
-  bool is_known_ = false;  // the light existed at the moment before, and was evaluated
+  bool is_known_ = false;  // the light existed at the previous moment, and was evaluated
 };
 
 }  // namespace penumbra::session

@@ -14,7 +14,7 @@ class TevPictures {
   /// Connects to `address`: HOST:PORT. Throws UsageError if it is invalid, ResourceError if the connection fails.
   explicit TevPictures(const std::string& address) : client_(address) {}
 
-  /// Shows R G B A, V and, of several lights, V of each, as in OUT.exr. Replaces a picture of the same name.
+  /// Shows R G B A, V and, if there are several lights, V of each, as in OUT.exr. Replaces a picture of the same name.
   void show(const std::string& name, const PictureContent& content);
 
  private:

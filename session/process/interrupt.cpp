@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends the process on signals, from a thread of its own.
+// Ends the process on signals, from a separate thread.
 
 #include "session/process/interrupt.hpp"
 

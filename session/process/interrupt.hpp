@@ -16,7 +16,7 @@ class Interrupted : public Error {
 /// caller stays ignored.) Throws std::system_error if the thread cannot be created.
 void watch_for_interrupts();
 
-/// Throws Interrupted if a signal came. To be called between steps of work that must unwind.
+/// Throws Interrupted if a signal has arrived. To be called between steps of work that must unwind.
 void check_interrupt();
 
 /// Marks a section of work that ends by unwinding, or is short: a child process runs, or files get their names

@@ -39,7 +39,7 @@ volumes::SilhouettesFrom parse_from(const std::string& text) {
   throw UsageError("--from {}: expected centre or anywhere", text);
 }
 
-/// Returns the index of the light with this name; for an empty name the first.
+/// Returns the index of the light with this name; 0 for an empty name.
 std::uint32_t find_light(const scenes::Scene& scene, const std::string& name) {
   if (name.empty()) return 0;
   const auto found = std::ranges::find(scene.lights, name, &scenes::AreaLight::name);

@@ -42,7 +42,7 @@ LightWedges wedges_of(const volumes::Casters& casters, const visibility::Light& 
 /// Wedges of one light of a scene, and the results of their proofs. Not movable, because its result refers to it.
 class BuiltWedges {
  public:
-  /// Memory for each triangle, beside the scene: measured on a sphere of a million triangles, and rounded down.
+  /// Memory for each triangle, in addition to the scene: measured on a sphere of a million triangles, and rounded down.
   static constexpr std::uint64_t kBytesPerTriangle = 150;
 
   /// Builds and validates the wedges. Coverage is checked for the scene's first camera and size. Throws UsageError for

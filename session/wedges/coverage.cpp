@@ -74,7 +74,8 @@ CoverageOutcome check_scene_coverage(const scenes::Scene& scene, const visibilit
   tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t i) {
     outcome.hidden[i] = 1 - area.visibility({samples[i].p, samples[i].carrier, samples[i].facing});
   });
-  // A disk is a polygon of equal area there, whose part differs from the disk's by 7.6e-8 at most (docs/exact.md).
+  // Exact unions use a polygon of equal area for a disk; its parts differ from the disk's by 7.6e-8 at most
+  // (docs/exact.md).
   const double error = is_round(light.kind) ? 1e-7 : 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     volumes::check_union(outcome.points[i], outcome.hidden[i], error, report);

@@ -57,7 +57,7 @@ void explain_wedges(const ToExplain& input, const volumes::SoftVisibility& soft,
     unexplained.erase(found);
   }
   // Some edges become silhouettes only because p's own triangle, and the triangles in its plane, are left out; they are
-  // no silhouettes of the mesh, and have no wedges.
+  // not silhouettes of the mesh, and have no wedges.
   const std::vector<volumes::SoftVisibility::Silhouette>& built = soft.silhouettes_of_center();  // by index
   for (const auto& [edge, covered] : unexplained) {
     if (std::ranges::binary_search(built, edge, {}, &volumes::SoftVisibility::Silhouette::first))

@@ -29,7 +29,7 @@ constexpr double kDarkest = 0.3;            // opacity over a black texel
 constexpr std::size_t kMostLabels = 24;     // more would hide the labelled edges
 constexpr const char* kTakes = "#c0392b";   // edges that take from the light
 constexpr const char* kGives = "#2471a3";   // edges that give back
-constexpr const char* kHidden = "#bdbdbd";  // by any triangle
+constexpr const char* kHidden = "#bdbdbd";  // hidden by any triangle
 
 double cross2(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
@@ -197,8 +197,8 @@ class Drawing {
                      sum.visibility));
   }
 
-  /// Draws the texture, faintly: the darker a cell, the smaller its weight. Blocks of texels if there are too many to
-  /// distinguish.
+  /// Draws the texture, faintly: the darker a cell, the smaller its weight. Draws blocks of texels if there are too
+  /// many to distinguish.
   void texels() {
     if (!picture_.light.texture) return;
     const visibility::LightTexture& texture = *picture_.light.texture;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera: where it looks, and how it is moved by hand. The same formulas as the program's (visibility/view_samples).
+// The camera: its position and direction, and its movements by hand. The formulas are those of visibility/view_samples.
 let view = { eye: [0, 0, 1], target: [0, 0, 0], up: [0, 1, 0], verticalFov: 45, shift: [0, 0] };
 let pictureSize = [512, 512];
 
@@ -11,8 +11,8 @@ function frameOf(camera) {
   return { forward, right, up, half, moved, aspect: pictureSize[0] / pictureSize[1] };
 }
 
-/// Returns where a point is in the picture, (0, 0) its top left and (1, 1) its bottom right, and how deep; null behind
-/// the eye.
+/// Returns a point's position in the picture, from (0, 0) at the top left to (1, 1) at the bottom right, and its depth;
+/// null for a point behind the eye.
 function project(point) {
   const f = frameOf(view), flat = view.orthographicHeight;
   const away = sub(point, flat ? add(view.eye, f.moved) : view.eye), depth = dot(away, f.forward);
@@ -23,7 +23,7 @@ function project(point) {
   return { x: (1 + x) / 2, y: (1 - y) / 2, depth: scale };
 }
 
-/// Returns the ray that the picture shows there: start and direction.
+/// Returns the ray through a position in the picture: its start and direction.
 function rayAt(x, y) {
   const f = frameOf(view);
   const aside = add(times(f.right, (2 * x - 1) * f.aspect * f.half), times(f.up, (1 - 2 * y) * f.half));
@@ -43,7 +43,7 @@ function sendCamera(moving) {
   tell("moved");
 }
 
-/// Turns the camera around the pivot, by angles; never over the pole.
+/// Turns the camera around the pivot by two angles, but never over the poles.
 function orbit(across, upward, moving = true) {
   const axis = unit(view.up);
   let away = turn(sub(view.eye, view.target), axis, -across);
@@ -53,7 +53,7 @@ function orbit(across, upward, moving = true) {
   sendCamera(moving);
 }
 
-/// Moves the camera by parts of the picture's height.
+/// Moves the camera sideways and up; 1 is the picture's height.
 function pan(across, upward, moving = true) {
   const f = frameOf(view), high = 2 * f.half * (view.orthographicHeight ? 1 : length(sub(view.target, view.eye)));
   const by = add(times(f.right, -across * high), times(f.up, upward * high));
@@ -61,14 +61,14 @@ function pan(across, upward, moving = true) {
   sendCamera(moving);
 }
 
-/// Comes nearer by a factor.
+/// Multiplies the camera's distance from the pivot by a factor.
 function dolly(factor, moving = true) {
   if (view.orthographicHeight) view = { ...view, orthographicHeight: view.orthographicHeight * factor };
   else view = { ...view, eye: add(view.target, times(sub(view.eye, view.target), factor)) };
   sendCamera(moving);
 }
 
-/// Walks with the pivot.
+/// Moves the camera and the pivot together.
 function walk(ahead, across, upward) {
   const f = frameOf(view), step = 0.04 * length(sub(view.target, view.eye));
   const by = add(add(times(f.forward, ahead * step), times(f.right, across * step)), times(f.up, upward * step));

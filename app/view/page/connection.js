@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The socket: JSON both ways, and pictures as binary messages. Changes that follow one another within a frame of the screen
-// go out as one, the newest.
+// The socket: JSON in both directions, and pictures as binary messages. Of several changes of the same kind within one
+// frame of the screen, only the newest is sent.
 const token = new URLSearchParams(location.search).get("token") || "";
 const listeners = {};
 let socket = null, clientId = 0, retries = 0;
-const waiting = new Map();  // changes that have not gone out, newest of each kind
-let sentStamp = 0;          // of the last change that asks for another picture
+const waiting = new Map();  // changes that have not been sent: the newest of each kind
+let sentStamp = 0;          // time of the last change that needs another picture
 const on = (type, listener) => { (listeners[type] ||= []).push(listener); };
 const tell = (type, ...values) => { for (const listener of listeners[type] || []) listener(...values); };
 
@@ -29,7 +29,7 @@ function post(message) {
   if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
 }
 
-/// `key`: what replaces an earlier message that has not gone out.
+/// Sends a change with the next frame of the screen. It replaces an unsent one with the same `key`.
 function change(key, message) {
   const stamp = performance.now();
   if (message.type !== "display" && message.type !== "masks") {
@@ -46,7 +46,7 @@ function flush() {
   waiting.clear();
 }
 
-/// Decodes a picture's message; the next comes when this one has been taken.
+/// Decodes a picture's message; the server sends the next one after the answer "taken".
 async function takeFrame(buffer) {
   const size = new DataView(buffer).getUint32(0, true);
   const header = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, size)));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A comparison's report opens this page with what it wants to see in the address: #scene=…&a=…&b=…&samples=….
+// A comparison's report opens this page with its scene and methods in the address: #scene=…&a=…&b=…&samples=….
 
 function takeReport(state) {
   const wanted = new URLSearchParams(location.hash.slice(1));
   if (!wanted.has("scene")) return;
-  window.history.replaceState(null, "", location.pathname + location.search);  // once: what is changed here stays
+  window.history.replaceState(null, "", location.pathname + location.search);  // applied only once
   if (wanted.get("scene") !== state.scene) {
     trouble(`The report is about ${wanted.get("scene")}; this is ${state.scene}. Nothing is changed.`);
     return;

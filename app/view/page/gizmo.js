@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every light where it is, over the picture, and handles on the chosen one: arrows along the axes, squares for planes, a disk
-// for the picture's plane, a diamond to aim, a ring to roll about the axis, dots for the size and for the angle of a sun.
+// Draws all lights over the picture, and the chosen light's handles: arrows move it along the axes, squares in the
+// planes of two axes, a disk in the picture's plane; a diamond aims it, a ring rolls it about its axis, dots change its
+// size or a sun's angle.
 const names = ["X", "Y", "Z"], axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]], colors = ["#ff5a52", "#5fd35f", "#5b9dff"];
 let held = null;
 
@@ -14,7 +15,7 @@ function onStage(point) {
   const place = project(point), [width, height] = stageSize();
   return place && { x: place.x * width, y: place.y * height, depth: place.depth };
 }
-/// Points of the light's rim, in space.
+/// Returns points on the light's rim, in world space.
 function rimOf(light) {
   const kind = kindOf(light), shape = light[kind];
   if (kind === "polygon") return light.polygon;
@@ -29,9 +30,9 @@ function rimOf(light) {
   } else return [];
   return Array.from({ length: 40 }, (_, i) => add(centre, add(times(u, Math.cos(i * Math.PI / 20)), times(v, Math.sin(i * Math.PI / 20)))));
 }
-/// Returns where the handles are; those of a light without a place are at the pivot.
+/// Returns the position of the handles: the light's centre; for a sun, the pivot.
 const anchorOf = (light) => centreOf(light) || (kindOf(light) === "sun" ? view.target : null);
-/// Returns the length in the world of so many pixels of the page there.
+/// Returns the length in world space that covers this number of the page's pixels at the point.
 function worldOf(point, pixels) {
   const place = onStage(point);
   return place ? pixels * 2 * frameOf(view).half * place.depth / stageSize()[1] : 0;
@@ -67,7 +68,7 @@ function handlesOf(light) {
       } });
   }
   if (kind === "sun") {
-    // Off the axis by the root of the angle, so that small suns can be told apart.
+    // The distance from the axis grows with the square root of the angle, so that small suns can be told apart.
     const tip = add(anchor, times(axis, 1.5 * reach)), facing = cross(axis, frameOf(view).forward), across = length(facing) > 1e-3 ? unit(facing) : anyAcross(axis);
     const least = worldOf(anchor, 16), most = worldOf(anchor, 110), widest = 179;
     made.push({ name: "angle of the sun", shape: "dot", color: "#ffd27a", at: add(tip, times(across, least + most * Math.sqrt(light.sun.angle / widest))), from: tip, begin: () => ({}),
@@ -102,7 +103,7 @@ function onPlane({ start, direction }, from, normal) {
   const t = dot(sub(from, start), normal) / across;
   return t > 0 ? add(start, times(direction, t)) : null;
 }
-/// The direction from the middle to where the ray meets a ball around it, or comes nearest.
+/// Returns the direction from `middle` to the point where the ray meets a ball around it, or comes nearest to the ball.
 function onBall({ start, direction }, middle, radius) {
   const nearest = dot(sub(middle, start), direction), aside = sub(add(start, times(direction, nearest)), middle), square = radius * radius - dot(aside, aside);
   return unit(square <= 0 ? aside : sub(aside, times(direction, Math.sqrt(square))));

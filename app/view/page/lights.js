@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights by numbers: a light's values, changes of them, and undoing changes.
+// Lights as numbers: shows a light's values, changes them, and undoes changes.
 let lights = [], off = [], solo = "", saved = { scene: "scene.json", pictures: {} }, history = [], undone = [], lightsBefore = "[]";
 const kinds = ["rectangle", "ellipse", "disk", "polygon", "sphere", "sun"];
 const kindOf = (light) => kinds.find((kind) => kind in light);
@@ -12,7 +12,7 @@ function centreOf(light) {
   if (kind === "polygon") return times(light.polygon.reduce(add), 1 / light.polygon.length);
   return light[kind].center;
 }
-/// Returns the direction in which a flat light shines; toward a sun.
+/// Returns the direction in which a flat light shines; for a sun, the direction toward it.
 function axisOf(light) {
   const kind = kindOf(light);
   if (kind === "rectangle" || kind === "ellipse") return unit(cross(light[kind].halfU, light[kind].halfV));
@@ -24,7 +24,7 @@ function axisOf(light) {
   for (let i = 0; i + 1 < rest.length; ++i) sum = add(sum, cross(sub(rest[i], first), sub(rest[i + 1], first)));
   return unit(sum);
 }
-/// A copy of the light whose places and directions have been changed.
+/// Returns a copy of the light with its positions and directions changed by these functions.
 function mapLight(light, place, direction) {
   const made = structuredClone(light), kind = kindOf(light), shape = made[kind];
   if (kind === "polygon") made.polygon = shape.map(place);
@@ -44,7 +44,7 @@ function scaledLight(light, factor) {
   return made;
 }
 
-/// Takes another version of a light, and sends it.
+/// Replaces the light of the same name, and sends the change.
 function setLight(light, moving) {
   lights = lights.map((one) => (one.name === light.name ? light : one));
   const { fixed, textured, ...words } = light;
@@ -55,7 +55,7 @@ function setLightsOn() {
   change("lights", { type: "lights", off, solo });
   showLight();
 }
-/// Call when a change is complete: it can then be undone.
+/// To be called when a change is complete, so that it can be undone.
 function keepLights() {
   const now = snapshot();
   if (now === lightsBefore) return;
@@ -81,7 +81,7 @@ function goTo(from, to) {
   showLight();
 }
 
-/// Rows of numbers: a name, and what reads and changes them.
+/// Returns the light's rows of numbers: name, values, and a function that returns the light with other values.
 function numbersOf(light) {
   const kind = kindOf(light), shape = light[kind], rows = [];
   const row = (name, values, set, step, more = {}) => rows.push({ name, values, set, step, ...more });
@@ -153,16 +153,16 @@ function showNumbers(light, box) {
   const values = numbersOf(light).flatMap((row) => row.values);
   [...box.querySelectorAll("input")].forEach((input, i) => {
     const text = String(Number(values[i].toPrecision(6)));
-    if (input.value !== text) input.value = text;  // each written field costs the browser a layout
+    if (input.value !== text) input.value = text;  // writing a field makes the browser lay out the page
   });
 }
 let numbersTimer = 0;
-/// Shows the chosen light's numbers five times a second at most: during a drag pictures matter more.
+/// Shows the chosen light's numbers, at most five times a second: during a drag pictures matter more.
 function showNumbersSoon() {
   if (!numbersTimer) numbersTimer = setTimeout(() => { numbersTimer = 0; showNumbers(chosenLight(), byId("light-numbers")); }, 200);
 }
 
-/// Saves what the server answers as a file of that name.
+/// Requests `path` from the server and saves the answer as a file of this name.
 async function saveAs(name, path, parameters = {}) {
   const answer = await fetch(`${path}?${new URLSearchParams({ token, ...parameters })}`);
   if (!answer.ok) throw new Error(await answer.text());
@@ -172,7 +172,7 @@ async function saveAs(name, path, parameters = {}) {
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 }
-/// Saves the scene, and the pictures of lights that it names. They are to be in one folder.
+/// Saves the scene, and the pictures of lights that it names; all files must be in one folder.
 async function save() {
   try {
     await saveAs(saved.scene, "/scene.json");
@@ -202,7 +202,7 @@ byId("light-two-sided").addEventListener("change", () => {
 });
 byId("undo").addEventListener("click", () => goTo(history, undone));
 byId("redo").addEventListener("click", () => goTo(undone, history));
-/// Goes away from the pivot until the light is in the picture as well.
+/// Moves the camera away from the pivot until the picture also shows the light.
 byId("see-light").addEventListener("click", () => {
   const centre = centreOf(chosenLight());
   if (!centre) return;

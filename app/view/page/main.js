@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state that the server tells, and the controls that are not a room of their own.
+// Shows the state that the server sends, and handles the controls that no other script handles.
 function trouble(text, lasting = true, kind = "bad") {
   byId("trouble").textContent = text;
   byId("trouble").className = kind;
@@ -80,7 +80,7 @@ for (const id of ["home", "camera"]) byId(id).addEventListener(id === "home" ? "
 byId("copy-camera").addEventListener("click", () => {
   const text = JSON.stringify({ name: byId("camera").value, ...cameraWords() });
   byId("copy-camera").dataset.copied = text;
-  // The older way to the clipboard: it asks for no permission.
+  // This older method of copying to the clipboard needs no permission.
   const area = Object.assign(document.createElement("textarea"), { value: text });
   document.body.append(area);
   area.select();
@@ -89,7 +89,7 @@ byId("copy-camera").addEventListener("click", () => {
   byId("copy-camera").focus();
   trouble(copied ? "The camera is in the clipboard." : `The camera as JSON: ${text}`, !copied, "good");
 });
-/// The field takes what was copied here or elsewhere: a camera of a scene file, or a whole scene's `camera`.
+/// The field accepts a camera as JSON, as copied on this page or from a scene file, or a whole scene with a `camera`.
 byId("paste-camera").addEventListener("change", () => {
   const input = byId("paste-camera");
   if (!input.value.trim()) return;

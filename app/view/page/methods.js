@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the methods that are shown, with their options, as the program describes them.
+// Controls for the two methods and their options, made from the program's description of its methods.
 let methods = [];
 const slots = { a: { select: byId("method"), options: byId("options-a"), given: {} }, b: { select: byId("method-b"), options: byId("options-b"), given: {} } };
 const kBest = "best";
@@ -49,7 +49,7 @@ function showOptions(slot) {
     box.append(label, help);
   }
 }
-/// Takes what the server says that is shown.
+/// Sets the controls to the methods and options in the server's state.
 function takeMethods(state) {
   for (const [slot, entry] of [["a", state.method], ["b", state.other]]) {
     const [name, ...rest] = (entry ?? "").split(":");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture on its canvas, which has the final picture's pixels; one or two answers, by wipe or side by side.
-let shown = null;  // header, and bitmaps by what they show
+// Draws the picture on a canvas with the size of the final picture: one answer, or two by wipe, flip or side by side.
+let shown = null;  // the frame's header, and its bitmaps by their contents (a, b, difference …)
 const canvas = byId("picture"), overlay = byId("overlay");
-let flipped = false;       // of `flip`: B is shown
-/// Returns which of the answers is shown: wipe, side, a or b.
+let flipped = false;       // whether `flip` shows B
+/// Returns how the answers are shown: both (wipe, side), or one (a, b).
 function mode() {
   if (!shown || !shown.by.a || !shown.by.b) return "a";
   const how = byId("compare").value;
@@ -40,7 +40,8 @@ function draw() {
   if (isAnother) fit();
 }
 
-/// Gives the canvas as much of the stage as its shape allows. Its size is kept, since asking the browser makes it lay out the page.
+/// Makes the canvas as large as the stage and its shape allow. canvasSize keeps the size, since reading it from the
+/// browser would lay out the page.
 let canvasSize = [canvas.width, canvas.height];
 function fit() {
   const room = byId("frame").getBoundingClientRect(), scale = Math.min(room.width / canvas.width, room.height / canvas.height);
@@ -52,13 +53,13 @@ function fit() {
   tell("moved");
 }
 
-/// Width and height of one answer's picture in the page.
+/// Returns the width and height of one answer's picture in the page.
 function stageSize() {
   return [mode() === "side" ? canvasSize[0] / 2 : canvasSize[0], canvasSize[1]];
 }
 
-/// Returns where the pointer is in the picture, 0 to 1 along each axis, of whichever answer it is over. The canvas stays where it is
-/// while something is dragged.
+/// Returns the pointer's position in the picture of the answer that it is over, from 0 to 1 along each axis. canvasBox
+/// is not read again during a drag, since the canvas does not move.
 let canvasBox = null;
 function placeOf(event) {
   if (!canvasBox || (!dragging && !held)) canvasBox = canvas.getBoundingClientRect();
@@ -70,7 +71,7 @@ function placeOf(event) {
 
 const answerWords = (answer) => answer.method + (answer.lightSamples ? `, ${answer.lightSamples} light samples` : "");
 
-/// Names what is shown, and offers the controls of the kind of comparison.
+/// Labels the answers, and shows the controls for the current kind of comparison.
 function nameShown() {
   const two = shown && shown.header.answers.length > 1 && shown.by.b, answers = shown ? shown.header.answers : [];
   byId("label-a").textContent = two && mode() !== "b" ? "A: " + answerWords(answers[0]) : "";
@@ -86,10 +87,11 @@ function flip() {
   nameShown();
 }
 
-/// Whether the error is wanted of one method, which has nothing to be compared with.
+/// Returns whether the error is requested although there is only one method, so that there is nothing to compare with.
 const isErrorWithoutB = () => byId("channel").value === "error" && shown.header.answers.length < 2;
 
-/// The scale of the picture of errors: the colour deepens with the square root of the error, so a quarter is half way.
+/// Shows the scale of the error picture. Colours deepen with the square root of the error: a quarter of the limit is
+/// half way along the scale.
 let errorColors = [];
 function showErrorScale({ limit }) {
   byId("error-scale").hidden = !shown.by.difference;

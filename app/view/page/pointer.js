@@ -7,7 +7,7 @@ function stopMoving() {
   flush();
   post({ type: "still" });
 }
-/// Ends a movement by keys or wheel, which do not say when they end.
+/// Ends a movement by keys or wheel after a pause, since no event marks its end.
 function soonStill() {
   clearTimeout(stillTimer);
   stillTimer = setTimeout(stopMoving, 250);
@@ -53,7 +53,7 @@ canvas.addEventListener("wheel", (event) => {
   dolly(Math.exp(0.0015 * event.deltaY));
   soonStill();
 }, { passive: false });
-/// Sets the pivot at what a pixel shows.
+/// Sets the pivot to the surface point that a pixel shows.
 function setPivot(place = pointed) {
   if (place) askPixel(...place, (pixel) => {
     if (!pixel.position) return;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows what a pixel says, and what pictures cost.
+// Shows the values at a pixel, and the times of pictures.
 let asking = null, wanted = null, pointed = null;
-let typed = false;  // the pixel is that of the number fields, and not the pointer's
+let typed = false;  // the pixel comes from the number fields, not from the pointer
 const pixelFields = [byId("pixel-x"), byId("pixel-y")];
 const frameTimes = [];
 
-/// One question at a time, of the newest place.
+/// Requests a pixel's values. Only one request is sent at a time; of those waiting, the newest is kept.
 function askPixel(x, y, then) {
   const place = { x: Math.min(Math.max(Math.floor(x * pictureSize[0]), 0), pictureSize[0] - 1), y: Math.min(Math.max(Math.floor(y * pictureSize[1]), 0), pictureSize[1] - 1), then };
   if (asking) {
-    if (then || !(wanted && wanted.then)) wanted = place;  // what waits for its pixel is not dropped
+    if (then || !(wanted && wanted.then)) wanted = place;  // a request with a callback is not replaced by one without
     return;
   }
   asking = place;
@@ -27,11 +27,11 @@ on("pixel", (pixel) => {
   }
 });
 on("lost", () => { asking = wanted = null; });
-on("say", (message) => { if (message.level === "error") asking = null; });  // perhaps of a pixel that is not there any more
+on("say", (message) => { if (message.level === "error") asking = null; });  // the pixel may no longer exist
 on("pointed", (place) => {
   if (place.some((part) => part < 0 || part >= 1)) return;
   pointed = place;
-  if (typed) tell("moved");  // its mark goes
+  if (typed) tell("moved");  // removes the typed pixel's mark
   typed = false;
   if (!dragging) askPixel(...place);
 });
@@ -55,7 +55,7 @@ function showPixel(pixel) {
     lines.push(`${pixel.answers.length > 1 ? "AB"[i] + ", " : ""}${answer.method}${answer.lightSamples ? `, ${answer.lightSamples} light samples` : ""}: ${of}`);
   }
   if (pixel.position) lines.push(`at ${pixel.position.map((value) => value.toFixed(4)).join(", ")}; depth ${pixel.depth.toFixed(4)}`);
-  box.setAttribute("aria-live", typed && pixel.final ? "polite" : "off");  // what the pointer passes is not read out
+  box.setAttribute("aria-live", typed && pixel.final ? "polite" : "off");  // silent under a moving pointer
   if (box.dataset.text !== lines.join()) box.replaceChildren(...lines.map((line) => Object.assign(document.createElement("p"), { textContent: line })));
   box.dataset.text = lines.join();
   box.dataset.pixel = `${pixel.x},${pixel.y}`;
@@ -67,14 +67,14 @@ function showPixel(pixel) {
   drawSeen(pixel.seen);
   drawOutline(pixel.outline, pixel);
 }
-/// A cross over the pixel that was typed, which no pointer shows.
+/// Draws a cross over the pixel that was typed, since no pointer marks it.
 function drawTypedPixel(drawing) {
   if (!typed) return;
   const [x, y] = stageSize().map((side, i) => pointed[i] * side), d = `M${x - 9},${y}h6m6,0h6M${x},${y - 9}v6m0,6v6`;
   for (const name of ["mark under", "mark"]) element("path", { d, class: name }, drawing);
 }
-/// The light as the pixel sees it, and on it what stands before it. Edges are drawn under all of that: what is left of them
-/// bounds what is seen.
+/// Draws the light as seen from the pixel, and the triangles in front of it. Their red edges are drawn first, so that
+/// only those that bound the visible part of the light remain uncovered.
 function drawOutline(outline, pixel) {
   const sheet = byId("outline"), pen = sheet.getContext("2d"), middle = sheet.width / 2, reach = 0.9 * middle;
   sheet.hidden = !byId("show-seen").checked;
@@ -105,7 +105,7 @@ function drawOutline(outline, pixel) {
   });
   pen.stroke();
   pen.fillStyle = pen.strokeStyle = "#454a55";
-  pen.lineWidth = 0.7;  // no seams between neighbours
+  pen.lineWidth = 0.7;  // covers seams between neighbouring triangles
   for (const places of outline.blockers) {
     pen.beginPath();
     walk(places);
@@ -122,7 +122,7 @@ function drawOutline(outline, pixel) {
   sheet.setAttribute("aria-label", `The outline of ${outline.light} as pixel ${pixel.x}, ${pixel.y} sees it: ${before}${v === undefined ? "" : `, V = ${v.toPrecision(6)}`}`);
   sheet.dataset.blockers = outline.blockers.length;
 }
-/// The light samples on the light, those that the pixel sees bright.
+/// Draws the light's samples; those that are visible from the pixel are bright.
 function drawSeen(seen) {
   const sheet = byId("seen"), pen = sheet.getContext("2d"), size = sheet.width;
   sheet.hidden = !byId("show-seen").checked;
@@ -144,9 +144,9 @@ byId("show-seen").addEventListener("change", () => {
 });
 
 const phases = ["load", "mesh", "view", "light", "evaluate", "beauty"];
-/// Sets a text where it is another, so that the browser lays out nothing that is as before.
+/// Sets a text only if it differs, so that the browser does not lay out the page without need.
 function say(element, text) { if (element.textContent !== text) element.textContent = text; }
-/// Sets the texts of a table's lines. Cells are replaced only where their number changes.
+/// Sets the texts of a table's rows. Cells are replaced only if the number of cells changes.
 function showRows(section, rows, tag) {
   const cells = [...section.querySelectorAll("th, td")], texts = rows.flat();
   if (cells.length === texts.length && section.rows.length === rows.length) return cells.forEach((cell, i) => say(cell, texts[i]));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene from outside, drawn by three.js: meshes, lights, what the camera sees, silhouettes, shadow volume, wedges, defects.
-// Places are relative to the scene's origin, as the program's own numbers are.
-let space = null;          // renderer, groups and answers; null until the view was opened
+// The 3D view of the scene, drawn by three.js: meshes, lights, the camera's frustum, silhouettes, shadow volume,
+// wedges and defects. Positions are relative to the scene's origin, as in the program.
+let space = null;          // renderer, groups and the server's answers; null until the view is first opened
 let spaceShown = false, spaceBusy = false, spaceSoon = false, spaceImpossible = false, meshesNumber = 0;
 let spaceAsked = { key: "", exact: false };
 const spaceLayers = ["meshes", "lights", "frustum", "silhouettes", "volume", "wedges", "floor", "defects"];
@@ -44,7 +44,7 @@ function linesOf(points, color, more = {}) {
   if (colors) geometry.setAttribute("color", new space.three.BufferAttribute(colors, 3, true));
   return new space.three.LineSegments(geometry, new space.three.LineBasicMaterial({ color, vertexColors: colors ? space.three.VertexColors : space.three.NoColors, ...material }));
 }
-/// Returns a surface that can be seen through, from both sides.
+/// Returns a transparent, two-sided surface.
 function veilOf(points, color, opacity, more = {}) {
   if (!points.length) return null;
   const made = new space.three.Mesh(geometryOf(points), new space.three.MeshBasicMaterial({ color, opacity, transparent: true, depthWrite: false, side: space.three.DoubleSide, ...more }));
@@ -52,7 +52,7 @@ function veilOf(points, color, opacity, more = {}) {
   return made;
 }
 const clips = () => (byId("space-cut").checked ? { clippingPlanes: [space.cut] } : {});
-/// Three bytes for each of so many corners of every element.
+/// Returns the colours as bytes, three for each corner; `corners`: the number of corners of an element.
 function bytesOf(colors, corners) {
   const bytes = new Uint8Array(3 * corners * colors.length);
   for (let i = 0, at = 0; i < colors.length; ++i) for (let k = 0; k < corners; ++k) for (const shift of [16, 8, 0]) bytes[at++] = (colors[i] >> shift) & 255;
@@ -76,7 +76,7 @@ function showMeshes() {
   geometry.computeVertexNormals();
   const offset = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1, ...(byId("space-glass").checked ? { transparent: true, opacity: 0.3, depthWrite: false } : {}) };
   const front = new three.Mesh(geometry, new three.MeshLambertMaterial({ vertexColors: three.VertexColors, side: three.FrontSide, ...offset }));
-  // With the defects, the backs of triangles have a colour of their own: among others a flipped one is seen from its back.
+  // If defects are shown, back faces have a special colour: a flipped triangle shows its back between its neighbours.
   const back = new three.Mesh(geometry, new three.MeshLambertMaterial(layerOn("defects") ? { color: spaceColors.back, side: three.BackSide, ...offset }
     : { vertexColors: three.VertexColors, side: three.BackSide, ...offset }));
   fillLayer("meshes", count ? [front, back] : []);
@@ -104,7 +104,8 @@ function showDefects() {
   spaceCanvas.dataset.defectLines = defects.linesArray.length / 6;
 }
 
-/// Parts of an array that belong to some bodies; `column`: of their counts; `size`: numbers of one element.
+/// Returns the parts of an array that belong to the bodies that `keep` accepts. `column`: index of the element count in
+/// a body's entry of bodiesArray; `size`: numbers per element.
 function partsOf(array, column, size, keep) {
   const { bodiesArray } = space.shadows, parts = [];
   for (let i = 0, at = 0; i < bodiesArray.length; i += 4) {
@@ -169,7 +170,7 @@ function showShadows() {
     shadowLines: shadows.shadowLinesArray.length / 6, inside: shadows.inside ? shadows.inside.count : "" });
 }
 
-/// Lights where they are now, and the pyramid that the picture's camera sees.
+/// Shows the lights at their current positions, and the view frustum of the picture's camera.
 function showLooks() {
   const shapes = lights.flatMap((light) => {
     const rim = rimOf(light).map(localOf), color = off.includes(light.name) || (solo && solo !== light.name) ? spaceColors.dark : spaceColors.light;
@@ -214,7 +215,7 @@ function drawSpace() {
   spaceCanvas.dataset.drawn = String(Number(spaceCanvas.dataset.drawn || 0) + 1);
 }
 
-/// Asks for what is not there yet, the newest state first; `exact`: the server has the state that the page has.
+/// Requests missing or outdated data for the newest state. `exact`: the server already has the page's current state.
 async function askSpace() {
   if (!spaceShown || spaceBusy || spaceImpossible || !lights.length) return;
   const exact = document.documentElement.dataset.exact === "true", { parameters, key } = shadowsWanted();
@@ -247,7 +248,7 @@ async function askSpace() {
       const shadows = await fetchSpace("shadows", parameters);
       if (space.shadows === null && shadows.wedges) {
         byId("space-wedge").value = Math.floor(shadows.wedges / 2);
-        byId("space-all").checked = shadows.wedges <= 200;  // more would hide one another
+        byId("space-all").checked = shadows.wedges <= 200;  // a larger number of wedges would hide one another
         spaceAsked.key = byId("space-all").checked ? key : "";
       }
       space.shadows = shadows;
@@ -278,7 +279,7 @@ function wedgeChosen() {
   drawSpaceSoon();
   askSpace();
 }
-/// The wedge whose edge is nearest to the pointer.
+/// Chooses the wedge whose edge is nearest to the pointer.
 function pickWedge(event) {
   if (!space.shadows || space.shadows.refused) return;
   const box = spaceCanvas.getBoundingClientRect(), place = [event.clientX - box.left, event.clientY - box.top], { three, eye } = space;

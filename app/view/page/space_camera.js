@@ -16,7 +16,7 @@ function outsideDolly(factor) {
   outside.away = times(unit(outside.away), Math.max(1e-4 * outside.size, Math.min(50 * outside.size, far)));
   outsideMoved();
 }
-/// Moves the outside camera by parts of the view's height.
+/// Moves the outside camera sideways and up; 1 is the view's height.
 function outsidePan(across, upward) {
   const forward = unit(times(outside.away, -1)), right = unit(cross(forward, [0, 1, 0])), up = cross(right, forward), high = 0.83 * length(outside.away);
   outside.target = add(outside.target, add(times(right, -across * high), times(up, upward * high)));

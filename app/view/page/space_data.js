@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gets what the 3D view draws from the server: meshes, their defects, and the shadows of the chosen light, each a
-// header and arrays of numbers. One question at a time, about the newest state.
+// Requests the 3D view's data from the server: meshes, their defects, and the shadows of the chosen light, each as a
+// header and arrays of numbers. Only one request is sent at a time, for the newest state.
 const spaceArrays = { float32: Float32Array, uint32: Uint32Array, int32: Int32Array };
 
-/// Header of an answer, with its arrays by name.
+/// Returns the header of an answer, with its arrays as members NAMEArray.
 async function fetchSpace(what, parameters = {}) {
   const answer = await fetch(`/space/${what}?${new URLSearchParams({ ...parameters, token })}`);
   if (!answer.ok) throw new Error((await answer.text()).trim());
@@ -17,7 +17,7 @@ async function fetchSpace(what, parameters = {}) {
   return header;
 }
 
-/// Three.js, when it is first needed; null: the program was built without it.
+/// Loads three.js when it is first needed; null: the program was built without it.
 const pageNonce = document.currentScript.nonce;
 let threeComing = null;
 function loadThree() {
@@ -32,7 +32,7 @@ function loadThree() {
 
 const spaceNumber = (id, otherwise) => (byId(id).value.trim() === "" || !Number.isFinite(Number(byId(id).value)) ? otherwise : Number(byId(id).value));
 
-/// Returns the question about shadows: the light as it is now, and the controls.
+/// Returns the request for shadows: its parameters from the controls, and a key of them and the light's current values.
 function shadowsWanted() {
   const light = chosenLight(), wanted = { light: light.name, construction: byId("space-construction").value, from: byId("space-from").value,
     s: byId("space-s").value, t: byId("space-t").value };
