@@ -113,7 +113,7 @@ class GroupedFormatter : public CLI::Formatter {
     if (!example_of(*app).empty()) text << paragraphs(fmt::format("Example:\n  {}\n", example_of(*app)));
     text << paragraphs(make_footer(app));
     if (app->get_parent() != nullptr)
-      text << paragraphs("Every command takes --quiet, --verbose and --threads N, too: `penumbra --help`.\n");
+      text << paragraphs("All commands also take --quiet, --verbose and --threads N: `penumbra --help`.\n");
     return text.str();
   }
 

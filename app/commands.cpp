@@ -27,8 +27,7 @@ constexpr const char* kDescription =
 
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 the job ran and a check failed; 2 wrong usage; 3 bad input; 4 device or resource; "
-    "130 interrupted. An output file appears whole or not at all; if stdout does not take the results (a full disk, a "
-    "closed pipe) the code is 4.\n"
+    "130 interrupted. An output file appears whole or not at all; if the results cannot be written to stdout (a full disk, a closed pipe), the code is 4.\n"
     "`penumbra help COMMAND` explains a command, `penumbra methods NAME` a method.";
 
 void start_log(const GlobalOptions& global) {
@@ -60,9 +59,9 @@ int run_command_line(int argc, char** argv) {
   GlobalOptions global;
   global.arguments.assign(argv + 1, argv + argc);
   auto* quiet = app.add_flag("-q,--quiet", global.quiet, "only errors on stderr, no progress bar");
-  app.add_flag("-v,--verbose", global.verbose, "say what is being done")->excludes(quiet);
+  app.add_flag("-v,--verbose", global.verbose, "report each step on stderr")->excludes(quiet);
   app.add_option("--threads", global.threads,
-                 "threads that work at once (default: as many as there are processors); results do not depend on it")
+                 "largest number of threads that work at once (default: the number of processors); results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
 
@@ -99,7 +98,7 @@ int run_command_line(int argc, char** argv) {
       return 0;
     }
     const bool unknown = no_command || dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-    say(fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for what is possible.\n",
+    say(fmt::format("penumbra: error: {}\nRun `penumbra {}--help` for its options.\n",
                     unknown ? explain_unknown_arguments(app) : error.what(),
                     app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " "));
     return static_cast<int>(ExitCode::usage);
@@ -108,7 +107,7 @@ int run_command_line(int argc, char** argv) {
   std::optional<tbb::global_control> threads;
   if (global.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, global.threads);
   const auto chosen = std::ranges::find_if(commands, [](const auto& command) { return command->chosen(); });
-  if (chosen == commands.end()) throw UsageError("no command; `penumbra --help` lists what there is");
+  if (chosen == commands.end()) throw UsageError("no command; `penumbra --help` lists the commands");
   const int code = (*chosen)->run(global);
   check_stdout();
   return code;

@@ -14,8 +14,7 @@ void add_allow_outside(CLI::App& command, bool& allow_outside) {
 void add_lenient(CLI::App& command, bool& lenient) {
   command.add_flag(
       "--lenient", lenient,
-      "leave out, with a warning, what changes shadows and is not supported or does not fit the format of an output; "
-      "without this option such a scene is refused");
+      "leave out, with a warning, features that affect shadows and that are not supported, or not by the output's format; without this option such a scene is refused");
 }
 
 }  // namespace penumbra::app

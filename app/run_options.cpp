@@ -16,7 +16,7 @@ void add_format_options(CLI::App& command, session::FormatOptions& format) {
           "--layers", format.layers,
           "content of the EXR: names of layers or channels with commas between, * and ? in them, and beauty for "
           "R G B A; such as beauty,V,Z,key,P or 'beauty,*_light' (default: all but <light>_light and "
-          "<light>_V, which repeat a light's R G B and V as Blender's compositor takes them)")
+          "<light>_V, which repeat a light's R G B and V in the form that Blender's compositor needs)")
       ->type_name("NAME,…");
   command.add_flag("--half", format.half, "16 bits in the EXR for colours, V and N; P, Prel, Z, id and mattes keep 32");
   command
@@ -45,8 +45,7 @@ void add_gltf_options(CLI::App& command, session::GltfOptions& gltf) {
       ->type_name("N");
   command
       .add_option("--clip", gltf.clips,
-                  "glTF: play this animation alone, by its name or its number from 0; may be given again (default: all "
-                  "that can be played at once; of several that move the same thing, only the first)")
+                  "glTF: play this animation alone, by its name or its number from 0; may be given again (default: all that can be played together; if several move the same node, only the first of these)")
       ->type_name("NAME|N")
       ->allow_extra_args(false);
 }
@@ -54,9 +53,9 @@ void add_gltf_options(CLI::App& command, session::GltfOptions& gltf) {
 void add_studio_options(CLI::App& command, session::StudioOptions& options) {
   command.add_flag(
       "--studio", options.always,
-      "put a soft rectangle light and a floor around the scene, as around a mesh or a glTF without lights");
+      "add a soft rectangle light and a floor to the scene, as is done for a mesh or a glTF without lights");
   command.add_flag("--no-studio", options.never, "refuse a scene without lights")->excludes("--studio");
-  command.add_option("--floor", options.floor, "floor of a studio: none, or auto where the scene does not lie on one")
+  command.add_option("--floor", options.floor, "floor of a studio: none, or auto (a floor if the scene does not already lie on one)")
       ->type_name("none|auto")
       ->capture_default_str();
   command
@@ -73,11 +72,11 @@ void add_run_options(CLI::App& command, session::RunOptions& options) {
       .add_option("SCENE", options.scene,
                   "scene file: .json (penumbra-scene/1), .gltf, .glb, .fbx or .dae; or a mesh file, around which a "
                   "studio is put; "
-                  "`render` takes mesh.####.obj, a file a frame")
+                  "`render` also takes mesh.####.obj, one file per frame")
       ->required();
   command
       .add_option("--light-samples", options.light_samples,
-                  "light samples: N or LxB, 1 to 4096 points (default: 256, or none where `render` gives exact areas)")
+                  "light samples: N or LxB, 1 to 4096 points (default: 256, or none if `render` computes exact areas)")
       ->type_name("N|LxB");
   command.add_option("--sample-pattern", options.sample_pattern, "rows, grid, sobol, jittered or rgss (default: rows)")
       ->type_name("NAME");
@@ -93,8 +92,7 @@ void add_run_options(CLI::App& command, session::RunOptions& options) {
       ->allow_extra_args(false);
   command
       .add_option("--camera", options.camera,
-                  "camera to look through: one of the scene's by its name, fit for one that sees all, or "
-                  "EX,EY,EZ:TX,TY,TZ[:FOV], eye, target and vertical degrees (default: the scene's first)")
+                  "camera to look through: one of the scene's by its name, fit for a camera that sees the whole scene, or EX,EY,EZ:TX,TY,TZ[:FOV] (eye, target and vertical field of view in degrees) (default: the scene's first)")
       ->type_name("NAME|fit|E:T[:FOV]");
   command
       .add_option("--device", options.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")

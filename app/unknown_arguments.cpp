@@ -42,7 +42,7 @@ std::string explain_unknown_arguments(const CLI::App& app) {
     const auto command = std::ranges::find_if(words, [](const std::string& word) { return !word.starts_with('-'); });
     if (command == words.end()) return fmt::format("no command comes after {}", fmt::join(words, " "));
     const std::vector<std::string> names = names_of_commands(app);
-    return fmt::format("there is no command \"{}\"; what is there: {}{}", *command, fmt::join(names, ", "),
+    return fmt::format("there is no command \"{}\"; commands: {}{}", *command, fmt::join(names, ", "),
                        did_you_mean(*command, names));
   }
   const CLI::App& command = *chosen.front();

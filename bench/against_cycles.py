@@ -2,28 +2,28 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error against processor time and memory of Penumbra and of Blender's Cycles, whole processes from start to file.
 
-    bench/against_cycles.py measure [BUILD [SCENE|PART …]]     renders and measures; writes bench/results/against-cycles.json after each row; an hour and a half
-    bench/against_cycles.py memory [BUILD]      the memory alone, of rows that were measured without it; some minutes
+    bench/against_cycles.py measure [BUILD [SCENE|PART …]]     renders and measures; writes bench/results/against-cycles.json after each row; takes an hour and a half
+    bench/against_cycles.py memory [BUILD]      measures only the memory, for rows that lack it; takes some minutes
     bench/against_cycles.py page [--check]      docs/against-cycles.md, its charts, and the README's sentences, from that file
 
-With scenes or parts named, other rows stay as they are. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
+If scenes or parts are named, other rows are kept. `measure` needs Blender, the built program and the add-on (targets penumbra and penumbra_blender_addon).
 
 Each scene (cycles/scenes.py) is rendered in parts:
 
-centres      all at the pixels' centres
+centres      one view sample at each pixel's centre
 antialiased  under a Blackman-Harris filter of 1.5 pixels, by 16 view samples a pixel of Penumbra
-lens         likewise, through a thin lens: each of the 16 view samples looks through its own point of the lens
+lens         as antialiased, through a thin lens: each of the 16 view samples looks through a different point of the lens
 motion       one object moves while the shutter is open, at the pixels' centres, by 16 moments of Penumbra
 
 by four processes: the program from the add-on's exchange file; Blender with the add-on; and Blender with
 Cycles, direct light, at several light samples a pixel. They take turns, each several times; a time is the median of user and
 system seconds of the process and its children; memory is the largest resident set of one process. The judge is Cycles: a crop
-that holds the most penumbra (in motion: the most that moved) is rendered with many samples under two seeds. An error is the root of the mean squared
-difference from their mean, over the crop's mean; the judge's own noise, half the difference of the two seeds, is taken off in
-squares, and is the least that can be told. The ratio of Penumbra's mean over the crop to the judge's is kept, too.
+with the most penumbra (in motion: with the most changed pixels) is rendered with many samples under two seeds. An error is the root of the mean squared
+difference from their mean, over the crop's mean; the judge's own noise, half the difference of the two seeds, is subtracted in
+squares; smaller errors cannot be measured. The ratio of Penumbra's mean over the crop to the judge's is stored, too.
 
-Cycles' error falls as one over the root of its samples, and its time is a constant and a share for each sample: so the
-seconds for an error that was not measured follow from two measured counts.
+Cycles' error is proportional to one over the square root of its samples, and its time is a constant plus a time per sample. So the
+seconds for any other error follow from two measured sample counts.
 """
 
 import contextlib

@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error and cost under domes: python3 bench/domes.py PROGRAM [--size PIXELS] [--runs N] [--peer build/embree_dome] [--out FILE.json]
 
-Compares the methods on scenes/skies/knot.json under each of its domes with the areas of `exact`: light samples by rays and by edges, suns of
-a median cut by maps, the picture's own depths, and exact areas. Seconds are those of the shadow, wall time, the median of N runs: an idle
+Compares methods on scenes/skies/knot.json under each of its domes with the areas of `exact`: light samples by rays and by edges, maps for the suns of
+a median cut, methods in screen space, and exact areas. Seconds are those of the shadow, wall time, the median of N runs: an idle
 machine is needed.
 
-With --peer: exact areas, and 256 light samples by the default method, beside a plain program on Embree, on three scenes under one radiance and
-under a picture. Seconds are processor seconds of the shadow: of ours the whole process less the same one with a single ray a view sample, the
-median of N runs. What Embree needs for an error is found between the numbers of rays that were measured, or beyond them along the last two.
+With --peer, compares exact areas, and 256 light samples by the default method, with a plain program on Embree, on three scenes under a uniform dome and
+under a picture. Seconds are processor seconds of the shadow: for Penumbra, those of the whole process minus those of the same process with a single ray per view sample, the
+median of N runs. Embree's seconds for an error are interpolated between measured numbers of rays, or extrapolated from the last two.
 
-Without --out a table is printed; FILE.json is one of bench/results/. Uses Python's standard library alone."""
+Without --out a table is printed; FILE.json is one of bench/results/. Uses only Python's standard library."""
 
 import argparse
 import json

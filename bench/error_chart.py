@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Draws error against time from the lines that penumbra-bench --json FILE --reference METHOD wrote: RMSE of V against the seconds of `shadow`, both by
-powers of ten, a panel a subject, a curve a contestant through its numbers of light samples.
+"""Draws error against time from the lines that penumbra-bench --json FILE --reference METHOD wrote: RMSE of V against the seconds of `shadow`, both on
+logarithmic axes, with one panel per subject and one curve per contestant, through its numbers of light samples.
 
   bench/error_chart.py FILE.jsonl OUT.svg
 
-All panels have the same axes. An error of 0 has no place on such an axis: the chart says how many points are left out."""
+All panels have the same axes. An error of 0 cannot be shown on such an axis: the chart states how many points are left out."""
 
 import json
 import sys
@@ -63,7 +63,7 @@ def chart(lines):
     panels, references, left_out = gathered(lines)
     points = [point for curves in panels.values() for curve in curves.values() for point in curve]
     if not points:
-        sys.exit("error_chart.py: no line has an error above 0 to a reference; penumbra-bench --reference exact writes such lines")
+        sys.exit("error_chart.py: no line has an error above 0 against a reference; penumbra-bench --reference exact writes such lines")
     contestants = list(dict.fromkeys(name for curves in panels.values() for name in curves))
     columns = min(max(len(panels), 2), ACROSS)
     head = 56 + LEGEND * len(contestants)

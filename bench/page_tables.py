@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Measures tables of pages: errors against exact areas, counters, sizes of files, processor seconds.
 
-  bench/page_tables.py [--build build] [--commit C] [NAME …]     measures the named tables, all without names, and writes bench/results/NAME.json
-  bench/page_tables.py --scene NAME                              prints a scene of these tables that is not one of scenes/
+  bench/page_tables.py [--build build] [--commit C] [NAME …]     measures the named tables (all tables if none is named) and writes bench/results/NAME.json
+  bench/page_tables.py --scene NAME                              prints a scene of these tables that is not in scenes/
 
-`bench/tables.py` then writes the pages. Errors, counters and sizes depend on no machine and no load. Uses Python's standard library alone."""
+`bench/tables.py` then writes the pages. Errors, counters and sizes do not depend on machine and load. Uses only Python's standard library."""
 
 import argparse
 import json

@@ -110,7 +110,7 @@ void multiply(std::vector<Subject>& subjects, const std::vector<Value>& values, 
 
 scenes::Rectangle& first_rectangle(scenes::Scene& scene, const char* option) {
   auto* rectangle = std::get_if<scenes::Rectangle>(&scene.lights.front().shape);
-  if (rectangle == nullptr) throw UsageError("{}: the first light of {} is no rectangle", option, scene.name);
+  if (rectangle == nullptr) throw UsageError("{}: the first light of {} is not a rectangle", option, scene.name);
   return *rectangle;
 }
 

@@ -6,7 +6,7 @@
   bench/tables.py --check    exits 1 if a page is not what this script writes, or if a file of results lacks commit, machine or command
 
 A table stands between the lines `<!-- results/NAME.json -->` and `<!-- end -->`. A file of results has `title`, `commit`, `machine`, `command`, `conditions`, `columns` and
-`rows`; a row holds text and numbers, null where nothing was measured, and `formats`, if there, says how the numbers of a column are printed. `recordedAt` in place of `commit` names the commit that wrote the figures down, where the one that was measured is
+`rows`; a row holds texts and numbers, null where nothing was measured; `formats`, if present, has the format of each column's numbers. `recordedAt` in place of `commit` names the commit that recorded the figures, if the measured commit is
 not known."""
 
 import json

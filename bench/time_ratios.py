@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures ratios of time that the papers sell, one method's over another's, into results/time-ratios.json.
+"""Measures ratios of times that papers claim, one method's time divided by another's, and writes results/time-ratios.json.
 
   bench/time_ratios.py [PROGRAM]           about half an hour on two threads
-  bench/time_ratios.py --only TEXT …       of the questions whose paper or words have one of these texts
+  bench/time_ratios.py --only TEXT …       only the questions whose paper or text contains one of these texts
   bench/time_ratios.py --write-scenes FOLDER      the scenes as GLB files, for a machine without the packages that hold their meshes
   bench/time_ratios.py --gpu FOLDER FILE.json     on a GPU, from those scenes: into FILE.json
 
 Then bench/tables.py writes the table of docs/figures.md. Questions that have a row are left out: delete a row to measure it again. A
-row says of which commit it is, and the machine's load.
+row has its commit and the machine's load.
 
 On a GPU a number is the clock's: `light` and `evaluate` as `compare` reports them, the median of five runs, and the sum of the passes'
-milliseconds by the GPU's own clock. Else it is processor seconds of a run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with more runs less
-those with one run, a run; and less what `compare` does once more for each run of any method, such as finding the view samples, which is measured
-in the same manner with a method that it runs once. So what a program needs to start, to read, to compile shaders and to judge is in neither, and other
-programs at work disturb less than they do a clock. The methods of a question are measured in turns; a ratio is the median of each
+milliseconds by the GPU's own clock. On a processor it is processor seconds per run (`light` and `evaluate`): those of a whole `penumbra compare` of one method with several runs minus
+those with one run, divided by the number of further runs; minus the time that `compare` itself takes per run, such as for finding the view samples, which is measured
+in the same manner with a method that always runs once. So times of starting, reading, compiling shaders and judging are not included, and other
+running programs disturb these times less than they disturb wall-clock times. The methods of a question are measured in turns; a ratio is the median of each
 turn's own."""
 
 import argparse

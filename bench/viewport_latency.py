@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures how Blender's 3D view answers in Rendered shading, with Penumbra and with Cycles: pictures a second while the view turns or
-a lamp moves, and how long after the last move the picture is as close to a converged one of Cycles as 5, 2 and 1 %.
+"""Measures how fast Blender's 3D view responds in Rendered shading, with Penumbra and with Cycles: pictures per second while the view turns or
+a lamp moves, and the time from the last move until the error against a converged picture of Cycles is below 5, 2 and 1 %.
 
   bench/viewport_latency.py [SCENE …] [--build BUILD] [--seconds S] [--rest S] [--runs N] [--out FILE.json] [--work FOLDER]
 
 SCENE: of bench/cycles/scenes.py. Needs Blender, Xvfb, the program and the add-on (targets penumbra and penumbra_blender_addon). A
-Blender with a window on a screen of its own, drawn by the processor, runs bench/cycles/viewport.py, which says what counts as a
+Blender with a window on a separate virtual screen, drawn by the processor, runs bench/cycles/viewport.py, which defines what counts as a
 picture. Without --out a table is printed; FILE.json is one of bench/results/."""
 
 import argparse

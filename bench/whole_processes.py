@@ -5,12 +5,12 @@
     bench/whole_processes.py small|lamps|dense|motion|antialiasing [BUILD]
 
 Writes bench/results/NAME.json, of which bench/tables.py makes a table of bench/README.md or docs/pictures.md. `lamps` and `dense` need
-Blender and the add-on (target penumbra_blender_addon). What is compared takes turns; a number is the least of its runs, for others that
-work on the machine only add to it, or the median where that is said.
+Blender and the add-on (target penumbra_blender_addon). Compared programs run in turns. A number is the least of its runs, since other programs
+on the machine only add to it, or the median where that is stated.
 
-small   a picture of a box, 64 × 64: what a process pays before its first pixel, by processes that do more and more of it
-lamps   200 and 1,000 lamps, 320 × 240, beside Cycles with 32 samples a pixel
-motion  an open shutter of 16 moments beside a still picture, where one of two bodies moves
+small   a picture of a box, 64 × 64: the cost of a process before its first pixel, by processes that do more and more of the work
+lamps   200 and 1,000 lamps, 320 × 240, compared with Cycles with 32 samples per pixel
+motion  an open shutter of 16 moments compared with a still picture, where one of two bodies moves
 dense   504,080 triangles, 640 × 480: the program from the add-on's exchange file, and what Blender adds with the add-on
 antialiasing  pictures of shipped scenes with one and with 16 view samples a pixel: processor seconds and memory
 """

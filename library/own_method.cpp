@@ -222,7 +222,7 @@ scenes::LightKinds kinds_of(const OwnMethodInfo& info) {
     if (kind == scenes::LightKinds()) {
       std::vector<std::string> names;
       for (const scenes::LightTraits& row : scenes::kLightTraits) names.emplace_back(row.name);
-      throw UsageError("method {}: there is no kind of light \"{}\"; what is there: {}{}", info.name, name,
+      throw UsageError("method {}: there is no kind of light \"{}\"; the kinds are: {}{}", info.name, name,
                        scenes::kEveryLight.words(), did_you_mean(name, names));
     }
     kinds = kinds | kind;

@@ -33,7 +33,7 @@ void Losses::throw_refused(const char* lenient) const {
   if (refused_.empty()) return;
   std::string all;
   for (const Loss& loss : refused_) all += (all.empty() ? "" : "; ") + text_of(loss);
-  throw InputError("{}. Shadows would be wrong: --lenient {} all the same, and warns", all, lenient);
+  throw InputError("{}. Shadows would be wrong: --lenient {} it nevertheless, with a warning", all, lenient);
 }
 
 void Losses::warn(std::vector<std::string>& warnings) const {

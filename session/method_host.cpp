@@ -233,7 +233,7 @@ void MethodHost::settle_shares(const Light& light, std::size_t first, std::span<
       continue;
     }
     if (!wanted(first + i)) continue;
-    refuse(light, first + i, fmt::format("V = {}, which is no share of a light (0 to 1)", values[i]));
+    refuse(light, first + i, fmt::format("V = {}, which is not between 0 and 1", values[i]));
   }
 }
 
@@ -244,7 +244,7 @@ void MethodHost::settle_form_factors(const Light& light, std::size_t first, std:
     if (std::min({f.x, f.y, f.z}) >= -kLeastFormFactor && std::isfinite(f.x + f.y + f.z)) {
       f = glm::max(f, glm::dvec3(0));
     } else if (wanted(first + i)) {
-      refuse(light, first + i, fmt::format("the form factor ({}, {}, {}): no finite numbers from 0 on", f.x, f.y, f.z));
+      refuse(light, first + i, fmt::format("the form factor ({}, {}, {}), which must be finite and not negative", f.x, f.y, f.z));
     }
   }
 }
@@ -255,9 +255,7 @@ bool MethodHost::wanted(std::size_t pixel) const {
 
 void MethodHost::refuse(const Light& light, std::size_t pixel, const std::string& what) const {
   throw ResourceError(
-      "method {} gave {}, under light \"{}\" at pixel ({}, {}): a fault of this program, so nothing of this method "
-      "is "
-      "shown; choose another --method, and report the scene",
+      "method {} gave {}, under light \"{}\" at pixel ({}, {}): an error of this program, so no result of this method is shown; choose another --method, and please report the scene",
       method_.description().name, what, light.name, pixel % session_.width, pixel / session_.width);
 }
 

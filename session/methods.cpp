@@ -78,7 +78,7 @@ const MethodRow& find_row(std::string_view name) {
     if (row->description.name == name) return *row;
   }
   const std::vector<std::string> names = names_of(all_methods());
-  throw UsageError("there is no method \"{}\"; what is there: {}{}", name, fmt::join(names, ", "),
+  throw UsageError("there is no method \"{}\"; methods: {}{}", name, fmt::join(names, ", "),
                    did_you_mean(name, names));
 }
 
@@ -182,8 +182,7 @@ void check_light(const MethodDescription& description, const MethodOptions& opti
       continue;
     }
     throw InputError(
-        "light \"{0}\" is a {1}; method {2} can do a {1}, but not with {3}={4}. Leave the option out, or take another "
-        "light (--light)",
+        "light \"{0}\" is a {1}; method {2} supports a {1}, but not with {3}={4}. Leave the option out, or choose another light (--light)",
         light.name, visibility::name_of(light.kind), description.name, key, value);
   }
   visibility::check_light(description, light);
@@ -229,7 +228,7 @@ const MethodDescription& default_method(const Light& light, const visibility::Sc
   }
   if (rays != nullptr) return *rays;
   if (areas != nullptr) return *areas;
-  throw InputError("light \"{}\" is a {}, which no method of this build can do; choose another with --light",
+  throw InputError("light \"{}\" is a {}, which no method of this build supports; choose another with --light",
                    light.name, visibility::name_of(light.kind));
 }
 

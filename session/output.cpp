@@ -107,16 +107,16 @@ float auto_exposure(const Session& session, std::span<const glm::vec3> beauty, s
 void check_bits(const visibility::MethodDescription& description, std::span<const visibility::Light> lights) {
   const visibility::Light& light = lights.front();
   if (description.output != visibility::Output::mask) {
-    throw UsageError("--bits: method {} gives V alone, not one bit a light sample; see `penumbra methods`",
+    throw UsageError("--bits: method {} computes only V, not one bit per light sample; see `penumbra methods`",
                      description.name);
   }
   if (const std::size_t pieces = whole_lights(lights).front().count; pieces > 1) {
-    throw UsageError("--bits: light \"{}\" is cut in {} pieces, and the file is of one; choose another with --light",
+    throw UsageError("--bits: light \"{}\" is divided into {} pieces, and the file can only contain one; choose another with --light",
                      light.name, pieces);
   }
   if (is_body(light.kind)) {
     throw UsageError(
-        "--bits: light \"{}\" is a {}, whose points differ from pixel to pixel; choose another with --light",
+        "--bits: light \"{}\" is a {}, whose light samples differ from pixel to pixel; choose another with --light",
         light.name, name_of(light.kind));
   }
 }

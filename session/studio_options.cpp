@@ -49,18 +49,18 @@ scenes::AddedLight parse_light(const std::string& text) {
   else if (parts[0] == "dome")
     light.kind = Kind::dome;
   else
-    throw refuse(fmt::format("\"{}\" is no kind of light", parts[0]));
+    throw refuse(fmt::format("\"{}\" is not a kind of light", parts[0]));
   if (light.kind == Kind::dome) {
     if (parts.size() != 1) throw refuse("a dome has neither place nor size");
     return light;
   }
-  if (parts.size() != 3) throw refuse("it has not three parts");
+  if (parts.size() != 3) throw refuse("it does not have three parts");
   const auto at = parse_point(parts[1]);
   if (!at) throw refuse(fmt::format("\"{}\" is not three numbers", parts[1]));
   const auto size = parse_number(parts[2]);
   const bool is_sun = light.kind == Kind::sun;
   if (!size || !(is_sun ? *size >= 0 && *size < 180 : *size > 0 && *size <= scenes::kLargestCoordinate))
-    throw refuse(fmt::format("\"{}\" is no {}", parts[2], is_sun ? "angle from 0 to less than 180" : "length above 0"));
+    throw refuse(fmt::format("\"{}\" is not a valid {}", parts[2], is_sun ? "angle from 0 to less than 180" : "length above 0"));
   if (is_sun && *at == glm::dvec3(0)) throw refuse("its direction is zero");
   light.at = *at;
   light.size = *size;
@@ -81,7 +81,7 @@ std::optional<scenes::Camera> parse_camera(const std::string& text) {
   if (parts.size() == 3) {
     const auto angle = parse_number(parts[2]);
     if (!angle || !(*angle > 0 && *angle < 180))
-      throw UsageError("--camera {}: \"{}\" is no vertical field of view above 0 and below 180 degrees", text,
+      throw UsageError("--camera {}: \"{}\" is not a vertical field of view above 0 and below 180 degrees", text,
                        parts[2]);
     camera.vertical_fov = *angle;
   }

@@ -108,7 +108,7 @@ std::vector<visibility::SurfacePoint> lightmap_points(const scenes::Scene& scene
     notes.push_back(fmt::format("{} triangles leave the map; what lies outside is not baked", texels.outside));
   if (texels.overlaps > 0)
     notes.push_back(
-        fmt::format("{} times a texel lies inside another triangle, too; the first one has it", texels.overlaps));
+        fmt::format("{} times a texel lies inside a further triangle; it belongs to the first one", texels.overlaps));
   return std::move(texels.points);
 }
 

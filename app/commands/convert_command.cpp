@@ -30,14 +30,13 @@ class ConvertCommand : public Command {
       : Command(app, "convert", "write the scene as the program understood it, in world space") {
     cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file")->required();
     cli_.add_option("-o,--output", out_,
-                    "FILE.json (textures of lights go beside it: FILE-light0.exr; no alpha, no pictures), FILE.glb "
+                    "FILE.json (textures of lights are written next to it: FILE-light0.exr; without alpha and pictures of materials), FILE.glb "
                     "(no textures of lights) or FILE.obj (geometry alone)")
         ->required()
         ->type_name("FILE");
     cli_.add_option(
             "--instances", instances_,
-            "meshes that the scene has several times: copies (each a mesh of its own, in the world), shared (one "
-            "mesh, once for each; not in .obj), or auto (shared in .glb, and in .json where it reads back as the "
+            "meshes that occur several times in the scene: copies (a separate mesh each, in world space), shared (one mesh with several instances; not in .obj), or auto (shared in .glb, and in .json where it reads back as the "
             "same scene or copies would exceed 500000 triangles) (default: auto)")
         ->type_name("NAME");
     add_allow_outside(cli_, allow_outside_);
@@ -46,7 +45,7 @@ class ConvertCommand : public Command {
     add_studio_options(cli_, studio_);
     cli_.add_option(
             "--camera", camera_,
-            "an additional camera, which becomes the first: fit for one that sees all, or EX,EY,EZ:TX,TY,TZ[:FOV]")
+            "an additional camera, which becomes the first: fit for a camera that sees the whole scene, or EX,EY,EZ:TX,TY,TZ[:FOV]")
         ->type_name("fit|E:T[:FOV]");
   }
 
@@ -86,7 +85,7 @@ class ConvertCommand : public Command {
     if (instances_ == "copies") return WriteInstances::copies;
     if (instances_.empty() || instances_ == "auto") return WriteInstances::automatic;
     if (instances_ != "shared") throw UsageError("--instances {}: expected auto, copies or shared", instances_);
-    if (out_.extension() == ".obj") throw UsageError("--instances shared: .obj has none; write .json or .glb");
+    if (out_.extension() == ".obj") throw UsageError("--instances shared: .obj has no instances; write .json or .glb");
     return WriteInstances::shared;
   }
 

@@ -31,10 +31,10 @@ std::string verdict_of(const std::vector<std::string>& refusals, const char* wha
 /// Prints the methods that a usable device cannot run.
 void print_exceptions(const render::DeviceInfo& device) {
   if (!device.usable() || device.lacks.empty()) return;
-  fmt::print("\n{} {} lacks {}. So these do not run there:\n", device.index, device.name,
+  fmt::print("\n{} {} lacks {}. These therefore do not run on it:\n", device.index, device.name,
              fmt::join(device.lacks, ", "));
   if (!render::VisibilityBuffer::runs_on(device))
-    fmt::print("  {:<32} the processor finds them: the same bits\n", "view samples");
+    fmt::print("  {:<32} computed on the processor, with the same bits\n", "view samples");
   for (const RefusedMethod& one : refused_methods(device))
     fmt::print("  {:<32} {}\n", one.method, one.reason.substr(one.reason.find(": ") + 2));
 }
@@ -93,12 +93,11 @@ class DevicesCommand : public Command {
   explicit DevicesCommand(CLI::App& app)
       : Command(
             app, "devices",
-            "list the devices of Vulkan and OpenGL, with the reason why one cannot be used, or not by some methods") {
+            "list the Vulkan devices and OpenGL contexts, and why any of them cannot be used, or not by some methods") {
     cli_.add_flag("--json", json_, "print JSON in place of the table");
     cli_.add_flag(
         "--self-test", self_test_,
-        "hold every pass against its twin in C++, and both rasterisers (Vulkan's and OpenGL's) against double "
-        "arithmetic and against each other, on this machine's device and drivers; exit 1 if one fails");
+        "compare every pass with its twin in C++, and both rasterisers (Vulkan's and OpenGL's) with double arithmetic and with each other, on this machine's device and drivers; exit 1 if one fails");
     cli_.add_option("--device", device_,
                     "with --self-test: Vulkan device to test: part of its name, its index, or cpu (default: "
                     "the best)")
@@ -110,11 +109,11 @@ class DevicesCommand : public Command {
 
   int run(const GlobalOptions&) override {
     if (self_test_) return run_self_test();
-    if (!device_.empty()) throw UsageError("--device {}: only --self-test takes a device; the table has all", device_);
+    if (!device_.empty()) throw UsageError("--device {}: only --self-test takes a device; the table lists all devices", device_);
     const auto devices = render::list_devices();
     if (devices.empty()) {
       spdlog::warn(
-          "no Vulkan device: no loader, no driver, or VK_DRIVER_FILES points nowhere; on Debian, "
+          "no Vulkan device: no loader, no driver, or VK_DRIVER_FILES names no existing file; on Debian, "
           "mesa-vulkan-drivers has one that runs on the processor");
     }
     const auto contexts = render::opengl::list_contexts();

@@ -26,14 +26,14 @@ const CLI::App& find_command(const CLI::App& program, const std::string& name) {
     if (command->get_name() == name) return *command;
     names.push_back(command->get_name());
   }
-  throw UsageError("there is no command \"{}\"; what is there: {}{}", name, fmt::join(names, ", "),
+  throw UsageError("there is no command \"{}\"; commands: {}{}", name, fmt::join(names, ", "),
                    did_you_mean(name, names));
 }
 
 class HelpCommand : public Command {
  public:
   explicit HelpCommand(CLI::App& app) : Command(app, "help", "explain the program or a command, as --help does") {
-    cli_.add_option("COMMAND", name_, "the command that is explained; none: the program")->type_name("");
+    cli_.add_option("COMMAND", name_, "command to explain (default: the program)")->type_name("");
   }
 
   int run(const GlobalOptions&) override {
@@ -60,8 +60,8 @@ class CompletionCommand : public Command {
  public:
   explicit CompletionCommand(CLI::App& app)
       : Command(app, "completion", "print the script with which a shell completes commands, options and methods") {
-    cli_.add_option("SHELL", shell_, "bash, zsh or fish; commands: their names alone")->required()->type_name("");
-    cli_.footer("`source <(penumbra completion bash)`; an installation puts all three where shells look for them.\n");
+    cli_.add_option("SHELL", shell_, "bash, zsh or fish; or commands, which prints only the commands' names")->required()->type_name("");
+    cli_.footer("`source <(penumbra completion bash)`; an installation puts the scripts of all three shells where these look for them.\n");
   }
 
   int run(const GlobalOptions&) override {
@@ -78,7 +78,7 @@ class CompletionCommand : public Command {
 class ManCommand : public Command {
  public:
   explicit ManCommand(CLI::App& app) : Command(app, "man", "print the manual page of the program or of a command") {
-    cli_.add_option("COMMAND", name_, "the command; none: the program")->type_name("");
+    cli_.add_option("COMMAND", name_, "command whose page is printed (default: the program)")->type_name("");
     cli_.footer("`penumbra man render | man -l -`; an installation has the pages as penumbra-render(1) and so on.\n");
   }
 

@@ -36,7 +36,7 @@ void print_table(const std::vector<const MethodDescription*>& methods) {
     for (const auto& [option, value, with] : session::variants_of(*method)) {
       fmt::print("{:<18} with {}={}: {}; {}{}{}\n", "", option, value, visibility::name_of(with.output),
                  fmt::join(session::light_names(with), ", "), with.textures ? "" : "; no textures",
-                 with.any_pattern ? "" : "; light samples in rows alone");
+                 with.any_pattern ? "" : "; light samples only in rows");
     }
   }
 }
@@ -52,7 +52,7 @@ void print_method(const MethodDescription& method) {
   line("exact for", method.exact_for);
   line("lights",
        fmt::format("{}{}", fmt::join(session::light_names(method), ", "), method.textures ? "" : "; no textures"));
-  if (!method.any_pattern) line("samples", "in rows alone (--sample-pattern rows or grid)");
+  if (!method.any_pattern) line("samples", "only in rows (--sample-pattern rows or grid)");
   if (method.exact_area) {
     std::string with;
     for (const auto& [key, value] : method.exact_area->options) with += fmt::format(":{}={}", key, value);
@@ -68,7 +68,7 @@ void print_method(const MethodDescription& method) {
   for (const auto& [option, value, with] : session::variants_of(method)) {
     fmt::print("  with {}={}: {}; {}{}{}\n", option, value, visibility::name_of(with.output),
                fmt::join(session::light_names(with), ", "), with.textures ? "" : "; no textures",
-               with.any_pattern ? "" : "; light samples in rows alone");
+               with.any_pattern ? "" : "; light samples only in rows");
   }
 }
 
@@ -76,7 +76,7 @@ class MethodsCommand : public Command {
  public:
   explicit MethodsCommand(CLI::App& app)
       : Command(app, "methods", "list the shadow methods: family, paper, output, what each is exact for, options") {
-    cli_.add_option("NAME", names_, "methods that are shown in full; none: a table of all")->type_name("");
+    cli_.add_option("NAME", names_, "methods to show in full (default: a table of all methods)")->type_name("");
     cli_.add_flag("--json", json_, "print JSON in place of the table");
   }
 

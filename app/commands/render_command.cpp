@@ -70,7 +70,7 @@ class RenderCommand : public Command {
     progress.begin("reading " + options_.run.scene.filename().string(), 1);
     std::size_t at = all_cameras ? 0 : next_wanted(cameras, 0);
     if (at == frames.size()) {
-      spdlog::info("all {} pictures are there", frames.size());
+      spdlog::info("all {} pictures already exist", frames.size());
       return 0;
     }
     // The device is made while the scene is read, which mostly happens in another process.
@@ -120,7 +120,7 @@ class RenderCommand : public Command {
           }
           progress.clear();
           for (const std::filesystem::path& file : files.spoilt())
-            spdlog::warn("{} is cut off, or no file that this command wrote: it is made again", file.string());
+            spdlog::warn("{} is incomplete, or was not written by this command: it is rendered again", file.string());
         }
         const bool is_last = &camera == &cameras.back() && (coming.valid() || next >= frames.size());
         auto moments =

@@ -132,10 +132,9 @@ class CompareCommand : public Command {
         ->type_name("DIR");
     cli_.add_option(
             "--methods,--method", methods_,
-            "methods to compare: names, with options of their own (a:key=value,b); or a group: geometry, image, all, "
+            "methods to compare: names, each with options if any (a:key=value,b); or a group: geometry, image, all, "
             "or "
-            "default, which is geometry and image without the slow ones (minutes; where the device is a processor, "
-            "seconds). A method of a group that takes more than 30 seconds for one run is left out, with a warning, "
+            "default, which is geometry and image without the methods that take minutes (or seconds, where the device is a processor). A method of a group that takes more than 30 seconds for one run is left out, with a warning, "
             "except with --max-rmse or --frames")
         ->type_name("LIST")
         ->capture_default_str();
@@ -146,7 +145,7 @@ class CompareCommand : public Command {
         ->type_name(fmt::format("{}|NAME:key=value", fmt::join(session::judge_names(), "|")))
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
-                    "light samples of the reference; same: those of the methods, which are then compared pair by pair")
+                    "number of light samples of the reference; same: the methods' light samples, so that answers are compared pair by pair")
         ->type_name("M|same")
         ->capture_default_str();
     cli_.add_option(
@@ -163,15 +162,13 @@ class CompareCommand : public Command {
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
     cli_.add_flag(
         "--error-budget", options_.error_budget,
-        "measure why each method errs: run it again without each cause of error alone, and without all of them (ten to "
-        "twenty runs a method)");
+        "measure the causes of each method's error: run it again with each cause removed in turn, and with all removed (ten to twenty runs per method)");
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: tone-mapped beauty image (sRGB)");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")
         ->type_name("F");
     cli_.add_option("--frames", frames_,
-                    "frames of the scene's animation, every N-th: errors over all of them, and how much each method "
-                    "flickers beside the reference; pictures and report are of the last one")
+                    "frames of the scene's animation, every N-th: errors over all of them, and how much each method flickers compared with the reference; pictures and report are of the last frame")
         ->type_name("A-B[xN]");
     cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
     cli_.add_option("--exposure", exposure_,
@@ -204,7 +201,7 @@ class CompareCommand : public Command {
     const compare::Metrics metrics = compared(global.arguments, fps, progress);
     print_table(metrics);
     print_budgets(metrics);
-    spdlog::info("{} shows it all", (run_.out / "report.html").string());
+    spdlog::info("{} shows all results", (run_.out / "report.html").string());
     // Failures have already been reported; the results of other methods are written nevertheless.
     const auto failed =
         std::ranges::find_if(metrics.methods, [](const auto& result) { return result.failure.has_value(); });
@@ -246,7 +243,7 @@ class CompareCommand : public Command {
     }
     if (pixel_filter_ != "box" || !filter_width_.empty()) {
       throw UsageError(
-          "--pixel-filter {}: methods are compared at pixels' centres, which no filter weighs; expected box",
+          "--pixel-filter {}: methods are compared at pixels' centres, without weights of a filter; expected box",
           pixel_filter_);
     }
     if (session::parse_integer<std::uint32_t>(motion_samples_) != 1u)
@@ -258,14 +255,13 @@ class CompareCommand : public Command {
       throw UsageError("--aperture {}: methods are compared through the lens's middle; expected 0", aperture_);
     if (instances_ != "auto" && instances_ != "copies") {
       throw UsageError(
-          "--instances {}: methods are compared on copies of the instances, which all of them can see; expected auto "
-          "or copies",
+          "--instances {}: methods are compared on copies of the instances, which all methods support; expected auto or copies",
           instances_);
     }
     if (session::parse_number(light_cutoff_) != 0.0)
       throw UsageError("--light-cutoff {}: every light's V is compared; expected 0", light_cutoff_);
     if (skip_existing_)
-      throw UsageError("--skip-existing: a comparison is measured as a whole, so nothing of an earlier one is kept");
+      throw UsageError("--skip-existing: a comparison always measures all methods; earlier results are not kept");
   }
 
   [[nodiscard]] compare::Metrics compared(const std::vector<std::string>& arguments, double fps,

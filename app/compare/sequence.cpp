@@ -123,7 +123,7 @@ void take_sum(compare::MethodResult& result, EntrySum& sum, std::size_t frames) 
   result.verdicts.reset();
   result.error.reset();
   if (!sum.failure && sum.frames < frames)
-    sum.failure = {static_cast<int>(ExitCode::input), "it cannot do the lights of every frame"};
+    sum.failure = {static_cast<int>(ExitCode::input), "it does not support the lights of every frame"};
   result.failure = sum.failure;
   compare::Seconds& seconds = result.stats.seconds;
   if (result.failure) {

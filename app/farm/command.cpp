@@ -59,12 +59,12 @@ class SubmitCommand : public Command {
         ->type_name("N")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    add("--round", round_, "number of this round, which the summary of the round before sets")
+    add("--round", round_, "number of this round; set by the summary of the previous round")
         ->type_name("N")
         ->check(CLI::Range(1, 101))
         ->capture_default_str();
     cli_.add_option("--logs", logs_,
-                    "folder for a log of each frame; tasks of the array write these logs into the folder of their own")
+                    "folder for a log of each frame; without Slurm; tasks of an array write these logs next to their own logs")
         ->type_name("DIR");
     add("--sbatch", sbatch_, "option for sbatch: partition=NAME, time=HOURS:MM:SS, mem=8G …; may be given again")
         ->type_name("KEY[=VALUE]")
@@ -190,13 +190,13 @@ class SubmitCommand : public Command {
         constexpr std::size_t kEnough = 3;
         if (failed.size() == kEnough) throw Error(static_cast<ExitCode>(now.front().code), give_up(failed));
         if (!now.empty()) {
-          spdlog::warn("frame {}, which would set the exposure (--exposure first), fails: the next frame sets it",
+          spdlog::warn("frame {}, which determines the exposure (--exposure first), failed: the next frame determines it",
                        frame);
           continue;
         }
       }
       if (const auto stops = session::written_exposure(picture(frame))) return fmt::format("{}", *stops);
-      spdlog::warn("{} does not say how it was exposed: the next frame decides", picture(frame).string());
+      spdlog::warn("{} does not contain its exposure: the next frame determines it", picture(frame).string());
     }
     return "auto";  // there is no frame left to be exposed
   }
@@ -210,7 +210,7 @@ class SubmitCommand : public Command {
   int render_here() {
     const std::size_t before = missing().size();
     if (before == 0) {
-      spdlog::info("all {} frames are there", frames_.size());
+      spdlog::info("all {} frames already exist", frames_.size());
       return 0;
     }
     std::vector<FailedFrame> failed;
@@ -225,10 +225,10 @@ class SubmitCommand : public Command {
     }
     for (const FailedFrame& one : failed) spdlog::error("frame {}: {}", one.frame, one.reason);
     if (failed.empty()) {
-      spdlog::info("all {} frames are there", frames_.size());
+      spdlog::info("all {} frames already exist", frames_.size());
       return 0;
     }
-    spdlog::error("{} of {} frames failed; the same command renders those alone", failed.size(), frames_.size());
+    spdlog::error("{} of {} frames failed; repeat the command to render only these", failed.size(), frames_.size());
     return failed.front().code;
   }
 
@@ -290,7 +290,7 @@ class SubmitCommand : public Command {
   int print_script() {
     const std::vector<std::int64_t> frames = missing();
     if (frames.empty()) {
-      spdlog::info("all {} frames are there", frames_.size());
+      spdlog::info("all {} frames already exist", frames_.size());
       return 0;
     }
     BatchJob job = job_of(frames, static_cast<std::size_t>(chunk_.value_or(1)), kDefaultMostTasks);
@@ -301,7 +301,7 @@ class SubmitCommand : public Command {
       if (!has(frames_.front()))
         job.first_frame = fmt::format("--frames={}-{} --exposure=first", frames_.front(), frames_.front());
     }
-    if (!chunk_) spdlog::info("nothing is measured for --dry-run: one frame a task; --chunk N says how many");
+    if (!chunk_) spdlog::info("--dry-run measures nothing, so each task has one frame; --chunk N sets another number");
     fmt::print("{}", text_of(job));
     return 0;
   }
@@ -315,7 +315,7 @@ class SubmitCommand : public Command {
     }
     std::vector<std::int64_t> frames = missing();
     if (frames.empty()) {
-      spdlog::info("all {} frames are there", frames_.size());
+      spdlog::info("all {} frames already exist", frames_.size());
       return 0;
     }
     if (round_ > rounds_ || (round_ > 1 && !before.empty() && was_cancelled(before))) return report(frames);
@@ -330,7 +330,7 @@ class SubmitCommand : public Command {
       if (!has(first)) cost = measure(first, "first");
       const auto stops = session::written_exposure(picture(first));
       if (!stops) {
-        throw InputError("{} does not say how it was exposed; remove it, or give --exposure in stops",
+        throw InputError("{} does not contain its exposure; remove it, or give --exposure in stops",
                          picture(first).string());
       }
       exposure = fmt::format("{}", *stops);
@@ -338,11 +338,11 @@ class SubmitCommand : public Command {
     if (!chunk_ && !cost) cost = measure(frames.front(), exposure);
     frames = missing();
     if (frames.empty()) {
-      spdlog::info("all {} frames are there", frames_.size());
+      spdlog::info("all {} frames already exist", frames_.size());
       return 0;
     }
     const std::size_t chunk = chunk_ ? static_cast<std::size_t>(*chunk_) : frames_per_task(*cost);
-    if (cost) spdlog::info("{:.2f} s to begin and {:.2f} s a frame: {} frames a task", cost->begin, cost->frame, chunk);
+    if (cost) spdlog::info("{:.2f} s to start and {:.2f} s per frame: {} frames per task", cost->begin, cost->frame, chunk);
     BatchJob job = job_of(frames, chunk, most);
     job.exposure = exposure;
     write_file_atomically(script_of(job), text_of(job));
@@ -357,7 +357,7 @@ class SubmitCommand : public Command {
 
   [[nodiscard]] int report(const std::vector<std::int64_t>& frames) const {
     spdlog::error("{} of {} frames are missing: {}", frames.size(), frames_.size(), list_of(frames, range_.step));
-    spdlog::error("grep 'frame {}:' {}/*.log says why; the same `penumbra submit` renders what is missing alone",
+    spdlog::error("grep 'frame {}:' {}/*.log shows why; the same `penumbra submit` renders only the missing frames",
                   frames.front(), shell_word(folder_.string()));
     return static_cast<int>(ExitCode::answer_is_no);
   }

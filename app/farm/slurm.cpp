@@ -52,7 +52,7 @@ std::string job_number(std::string_view printed) {
   const std::string_view last = session::split(trimmed(printed), '\n').back();
   const std::string_view number = last.substr(0, last.find(';'));
   if (!session::parse_integer<std::uint64_t>(number))
-    throw ResourceError("sbatch printed \"{}\", and a job's number was expected", trimmed(printed));
+    throw ResourceError("sbatch printed \"{}\"; expected a job number", trimmed(printed));
   return std::string(number);
 }
 

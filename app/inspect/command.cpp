@@ -39,8 +39,7 @@ class InspectCommand : public Command {
   explicit InspectCommand(CLI::App& app)
       : Command(app, "inspect", "list defects of meshes, and each method's verdict on them") {
     cli_.add_option("FILE", named_,
-                    "meshes (OBJ, PLY, OFF, STL …), scenes (.json, .gltf, .glb), or folders of them, taken with the "
-                    "folders below")
+                    "meshes (OBJ, PLY, OFF, STL …), scenes (.json, .gltf, .glb), or folders of them, searched with all subfolders")
         ->required()
         ->type_name("FILE|FOLDER");
     cli_.add_option("--json", json_,
@@ -60,7 +59,7 @@ class InspectCommand : public Command {
         ->type_name("OUT.png");
     cli_.add_option("--export-defects", defects_, "the mesh with its defects coloured (see below)")
         ->type_name("FILE.ply");
-    cli_.add_option("--repair", repaired_, "repair what can be repaired, and say what was done and what was not")
+    cli_.add_option("--repair", repaired_, "repair what can be repaired, and report what was and was not repaired")
         ->type_name("OUT.ply|.obj|.stl|.off|.glb");
     cli_.add_option("--weld", weld_, "merge vertices at most this far apart (in the file's unit)")
         ->type_name("T")
@@ -187,7 +186,7 @@ class InspectCommand : public Command {
     if (!(weld_ >= 0 && std::isfinite(weld_))) {
       throw UsageError("--weld {}: expected a distance, 0 or more, in the file's unit", weld_);
     }
-    if (json_ == "-" && csv_ == "-") throw UsageError("--json - and --csv -: stdout takes one of them");
+    if (json_ == "-" && csv_ == "-") throw UsageError("--json - and --csv -: only one of them can be written to stdout");
     if (!defects_.empty() && defects_.extension() != ".ply")
       throw UsageError("{}: expected a name that ends in .ply", defects_.string());
     if (!png_.empty() && png_.extension() != ".png")

@@ -82,11 +82,11 @@ FailOn::FailOn(std::string_view names, bool searches_intersections) {
     } else {
       std::vector<std::string> all = {"open", "non-manifold"};
       all.insert(all.end(), known.begin(), known.end());
-      throw UsageError("--fail-on {}: there is no such count; there are {}{}", name, fmt::join(all, ", "),
+      throw UsageError("--fail-on {}: there is no such count; the counts are {}{}", name, fmt::join(all, ", "),
                        did_you_mean(std::string(name), all));
     }
     if (!searches_intersections && !keys_.empty() && keys_.back() == kIntersections)
-      throw UsageError("--fail-on {}: --no-self-intersections leaves them uncounted", name);
+      throw UsageError("--fail-on {}: they are not counted with --no-self-intersections", name);
   }
 }
 

@@ -100,7 +100,7 @@ std::vector<DefectKind> kinds_of_defects(const mesh::Diagnosis& diagnosis) {
 }
 
 std::string defect_legend() {
-  std::string text = "  grey       nothing is wrong\n  dark red   self-intersecting triangles\n";
+  std::string text = "  grey       no defect\n  dark red   self-intersecting triangles\n";
   for (const Legend& legend : kLegend) text += fmt::format("  {:<9}  {}\n", legend.color_name, legend.what);
   return text;
 }

@@ -47,7 +47,7 @@ session::InspectedMesh read_again(const std::filesystem::path& file, const mesh:
     std::string said = error.what();
     if (const std::size_t at = said.find(written.string()); at != std::string::npos)
       said.erase(at, written.string().size() + (said.substr(at + written.string().size()).starts_with(": ") ? 2 : 0));
-    throw InputError("{}: not written, since no reader would take it: {}", file.string(), said);
+    throw InputError("{}: not written, since reading it back fails: {}", file.string(), said);
   }
 }
 

@@ -74,7 +74,7 @@ std::optional<PipeMessage> MessageSource::next() {
   if (length > kLongestHead) throw InputError("a message's head has {} bytes; expected up to {}", length, kLongestHead);
   PipeMessage message{parse_message(take(length, "a message's head")), {}};
   if (!message.head.is_object() || !message.head.contains("type") || !message.head["type"].is_string())
-    throw InputError("a message is an object with a \"type\"");
+    throw InputError("a message must be an object with a \"type\"");
   message.bytes = take(said_bytes(message.head), "a message's bytes");
   return message;
 }

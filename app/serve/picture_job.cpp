@@ -44,7 +44,7 @@ void PictureJob::run(const std::vector<std::string>& arguments) {
   session::PictureOptions options = parse_picture(arguments);
   session::PictureRequest request = session::parse_request(options);
   if (request.frames.size() != 1 || options.run.camera == "all" || (request.moments > 1 && options.moments.empty()))
-    throw UsageError("one picture of one frame is made at a time, by moments in files (--moment) alone");
+    throw UsageError("expected one camera and one frame; moments of an open shutter must be given as files (--moment)");
   session::OutputFiles outputs = session::outputs_of(options, request.frames, {options.run.camera});
   outputs.require_writable();
   session::check_png_name(options);

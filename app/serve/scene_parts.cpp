@@ -27,7 +27,7 @@ std::string take_thing(std::string& name) {
 void add(const std::string& thing, std::uint32_t number, std::uint32_t& first, std::uint32_t& count) {
   if (count == 0) first = number;
   if (first + count != number)
-    throw InputError("the nodes of the thing \"{}\" do not stand together in their file", thing);
+    throw InputError("the nodes of the thing \"{}\" are not contiguous in their file", thing);
   ++count;
 }
 

@@ -214,7 +214,7 @@ void Service::show(const json& message) {
     camera = changed_camera(camera, *change);
     update.changes.push_back({{"type", "camera"}, {"camera", *change}});
   } else if (!renderer_) {
-    throw InputError("message \"show\": the first one says which camera looks");
+    throw InputError("message \"show\": the first one must contain a camera");
   }
   if (const auto size = message.find("size"); size != message.end())
     update.changes.push_back({{"type", "size"}, {"width", size->at(0)}, {"height", size->at(1)}});
@@ -224,7 +224,7 @@ void Service::show(const json& message) {
     update.changes.push_back({{"type", "method"}, {"slot", "a"}, {"entry", *method}});
   if (parts_.has_changed()) update.scene = parts_.scene(camera);
   if (!renderer_) {
-    if (!update.scene) throw InputError("there is nothing to show: nothing was put");
+    if (!update.scene) throw InputError("there is nothing to show: no scene was sent (message \"put\")");
     renderer_ = std::make_unique<LiveRenderer>(
         options_, WholeScene{update.scene->scene},
         LiveEvents{.frame = {},
@@ -244,7 +244,7 @@ void Service::render(const json& message) {
     const auto arguments = message.find("arguments");
     if (arguments == message.end() || !arguments->is_array() ||
         !std::ranges::all_of(*arguments, [](const json& argument) { return argument.is_string(); }))
-      throw UsageError("message \"render\": its \"arguments\" are a list of texts");
+      throw UsageError("message \"render\": its \"arguments\" must be a list of strings");
     const Renders renders(*inbox_);
     job_.run(arguments->get<std::vector<std::string>>());
   } catch (const Error& error) {

@@ -63,7 +63,7 @@ class SweepCommand : public Command {
         ->capture_default_str();
     cli_.add_option(
             "--over", over_,
-            "what varies: options of the methods, light-samples, and the lights' size (light.half in the scene's "
+            "what to vary: options of the methods, light-samples, and the lights' size (light.half in the scene's "
             "unit, light.angle of suns in degrees), such as size=256..4096 (doubled), layers=1,2,4, "
             "light.half=0.1..0.5+0.1; methods take the keys that they have; may be given again")
         ->required()
@@ -71,7 +71,7 @@ class SweepCommand : public Command {
         ->type_name("KEY=VALUES,…");
     cli_.add_option(
             "--reference", reference_,
-            fmt::format("reference of the errors, as in `compare` (default: {} if it does the lights, else rays)",
+            fmt::format("reference of the errors, as in `compare` (default: {} if it supports the lights, else rays)",
                         session::exact_area_example()))
         ->type_name("NAME");
     cli_.add_option("--reference-samples", options_.reference_samples, "light samples of the reference, if rays")
@@ -92,7 +92,7 @@ class SweepCommand : public Command {
     options_.method_options = session::parse_method_options(run_.method_options);
     const std::vector<SweptKey> over = parse_over(over_);
     if (options_.reference_samples == "same")
-      throw UsageError("--reference-samples same: a sweep is judged by one reference; expected a number");
+      throw UsageError("--reference-samples same: a sweep has one reference for all rows; expected a number");
     std::optional<double> time;
     if (frame_) time = session::parse_frame(*frame_) * (1 / session::parse_fps(fps_));
     session::OutputFolder folder;

@@ -58,7 +58,7 @@ std::vector<SweptKey> parse_over(std::span<const std::string> texts) {
         const std::string_view name = part.substr(0, equals);
         if (name.empty()) refuse(text);
         if (std::ranges::find(keys, name, &SweptKey::name) != keys.end())
-          throw UsageError("--over {}: {} is there twice", text, name);
+          throw UsageError("--over {}: {} is given twice", text, name);
         keys.push_back({std::string(name), {}});
       } else if (is_first) {
         refuse(text);

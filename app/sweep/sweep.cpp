@@ -206,7 +206,7 @@ void require_known_keys(std::span<const SweptKey> over, std::span<const session:
     }
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
-    throw UsageError("--over {}: none of the methods has such an option to vary; what there is: {}{}", key.name,
+    throw UsageError("--over {}: none of the methods has such an option to vary; the options are: {}{}", key.name,
                      fmt::join(names, ", "), did_you_mean(key.name, names));
   }
 }

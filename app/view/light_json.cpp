@@ -105,14 +105,14 @@ scenes::AreaLight changed_light(const scenes::AreaLight& light, const json& chan
     constexpr std::array kKnown = {"name",   "rectangle", "ellipse",    "disk",     "polygon",
                                    "sphere", "sun",       "irradiance", "radiance", "twoSided"};
     if (std::ranges::find(kKnown, key) == kKnown.end())
-      throw InputError("light \"{}\": the page does not change \"{}\"", light.name, key);
+      throw InputError("light \"{}\": \"{}\" cannot be changed", light.name, key);
   }
   const bool has_own_shape = has_shape(light_json(light));
   const bool is_same_kind = has_own_shape == has_shape(own);
   if (!has_own_shape) own["sphere"] = {{"center", {0, 0, 0}}, {"radius", 1}};  // placeholder: files need a shape
   const scenes::AreaLight read = read_alone(std::move(own), {{"eye", {0, 0, 1}}, {"target", {0, 0, 0}}}).lights.front();
   if (!is_same_kind || (has_own_shape && read.shape.index() != light.shape.index()))
-    throw InputError("light \"{}\": its kind stays what it is", light.name);
+    throw InputError("light \"{}\": its kind cannot be changed", light.name);
   scenes::AreaLight made = light;
   if (has_own_shape) {
     std::optional<scenes::Cone> cone;

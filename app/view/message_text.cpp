@@ -34,9 +34,9 @@ bool is_deep(std::string_view text) {
 }  // namespace
 
 json parse_message(std::string_view text) {
-  if (is_deep(text)) throw InputError("a message is nested deeper than any that is known");
+  if (is_deep(text)) throw InputError("a message is nested too deeply");
   json message = json::parse(text, nullptr, false);
-  if (message.is_discarded()) throw InputError("a message is JSON");
+  if (message.is_discarded()) throw InputError("a message must be JSON");
   return message;
 }
 

@@ -29,8 +29,7 @@ WholeScene read_whole_scene(const session::RunOptions& options, session::Instanc
     }
   }
   read.scene.warnings.push_back(fmt::format(
-      "{} triangles, {} instances of meshes among them, without copies: each picture finds what it sees of them; "
-      "methods that need all triangles, and the 3D view, are refused (--instances copies)",
+      "{} triangles with the {} instances of meshes, too many for copies: each picture finds the triangles that it needs; methods that need all triangles, and the 3D view, are not available (--instances copies makes them so)",
       triangles, read.instances.all.size()));
   return read;
 }

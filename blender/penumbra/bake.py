@@ -35,7 +35,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
             return {"CANCELLED"}
         except Exception as error:  # an error in the add-on itself
             traceback.print_exc()
-            self.report({"ERROR"}, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
+            self.report({"ERROR"}, f"the add-on failed ({type(error).__name__}: {error}); the console has the details")
             return {"CANCELLED"}
         self.report({"INFO"}, f"baked into the image '{image.name}'")
         return {"FINISHED"}
@@ -55,7 +55,7 @@ class PENUMBRA_OT_bake(bpy.types.Operator):
             writer.write(glb, None)
             refused = losses.sentences(lost.refused)
             if refused and not wanted.lenient:
-                raise ValueError("; ".join(refused) + ". The image would be wrong; 'Lenient' bakes all the same")
+                raise ValueError("; ".join(refused) + ". The image would be wrong; 'Lenient' bakes it nevertheless")
             command = program.bake_arguments(binary, glb, picture, _NAME, wanted)
             code, printed = program.run(command, lambda: False, workspace)
             warnings, error = program.messages(printed.replace(_NAME, thing.name), glb)

@@ -26,13 +26,13 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
         """Renders one frame. Raises nothing: after an exception Blender continues with an empty picture, or crashes."""
         try:
             if background.failed_before() is not None:
-                raise Refused(f"not rendered, for frame {background.failed_before()} failed")
+                raise Refused(f"not rendered, because frame {background.failed_before()} failed")
             self._render(depsgraph)
         except (Refused, ValueError, OSError) as error:
             self._fail(depsgraph, str(error))
         except Exception as error:  # an error in the add-on itself
             traceback.print_exc()
-            self._fail(depsgraph, f"the add-on failed ({type(error).__name__}: {error}); the console says where")
+            self._fail(depsgraph, f"the add-on failed ({type(error).__name__}: {error}); the console has the details")
 
     def _fail(self, depsgraph, text):
         text = f"Frame {depsgraph.scene.frame_current}: {text}"
@@ -100,7 +100,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
     def _say(self, lost, lenient):
         refused = losses.sentences(lost.refused)
         if refused and not lenient:
-            raise Refused("; ".join(refused) + ". The picture would be wrong; 'Lenient' renders all the same")
+            raise Refused("; ".join(refused) + ". The picture would be wrong; 'Lenient' renders it nevertheless")
         for text in refused + losses.sentences(lost.mentioned):
             self.report({"WARNING"}, text)
 
@@ -127,7 +127,7 @@ class PenumbraEngine(viewport.ShownInViews, bpy.types.RenderEngine):
         result.load_from_file(file)
         self.end_result(result)
         for full, short in names.shortened:
-            self.report({"WARNING"}, f"the pass of '{full}' is named '{short}': Blender takes no longer names")
+            self.report({"WARNING"}, f"the pass of '{full}' is named '{short}': Blender does not support longer names")
         whole = self.get_result()
         for name, text in picture.attributes.items():
             if name.startswith("cryptomatte/"):

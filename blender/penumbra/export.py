@@ -78,7 +78,7 @@ class SceneWriter:
     def _object(self, instance):
         thing = instance.object
         if lamps.is_linked(thing):
-            self.losses.refuse("is linked to some objects alone (Object, Shading, Light Linking), which is not done", thing.name)
+            self.losses.refuse("is linked to certain objects only (Object, Shading, Light Linking), which is not supported", thing.name)
         if thing.type == "LIGHT":
             if thing.visible_diffuse:
                 self._balls += lamps.write_lamp(thing.data, thing.name, instance.matrix_world, self.glb, self.losses)
@@ -190,7 +190,7 @@ class SceneWriter:
             if look.interpolation in ("Cubic", "Smart") and max(image.size) > texels.FINE // 2 and not look.image_alpha:
                 self.losses.mention(f"is an image of more than {texels.FINE // 2} pixels: interpolated linearly", image.name)
             if not texels.knows_space(image):
-                self.losses.refuse(f"is an image in the colour space {image.colorspace_settings.name}, which is not known", image.name)
+                self.losses.refuse(f"is an image in the colour space {image.colorspace_settings.name}, which is not supported", image.name)
         number = self._images[key]
         if number is None:
             return None
@@ -202,19 +202,19 @@ class SceneWriter:
         camera = self._seen_by.evaluated_get(self.depsgraph)
         lens = camera.data
         if lens.type not in ("PERSP", "ORTHO"):
-            raise ValueError(f"camera '{camera.name}' is panoramic; perspective and orthographic ones are rendered")
+            raise ValueError(f"camera '{camera.name}' is panoramic; only perspective and orthographic cameras are rendered")
         matrix = lamps.without_scale(camera.matrix_world)
         if lamps.is_sheared(matrix):
             self.losses.refuse("is a camera that is sheared (by a parent with uneven scale)", camera.name)
         view = lamps.lens_of(lens, region)
         focus = lamps.focus_of(camera, matrix)
         if focus is not None and lamps.has_blades(lens.dof):
-            self.losses.mention("has an aperture with blades or a ratio, which is taken as round", camera.name)
+            self.losses.mention("has an aperture with blades or a ratio, which is treated as round", camera.name)
         self.glb.camera(camera.name, matrix, region.size[0] / region.size[1], focus=focus, **view)
         frustum = space.Frustum(matrix, region.size[0] / region.size[1], **view)
         for placed in self._placed:
             if frustum.sees(placed, 0, lens.clip_start):
-                self.losses.refuse(f"is cut by the clip start of camera '{camera.name}', which is not done; lower it", placed.name)
+                self.losses.refuse(f"is cut by the clip start of camera '{camera.name}', which is not supported; lower it", placed.name)
             if frustum.sees(placed, lens.clip_end, numpy.inf):
                 self.losses.mention(f"reaches beyond the clip end of camera '{camera.name}', and is shown there", placed.name)
 

@@ -29,9 +29,9 @@ def _text(data, start):
 
 def _header(data):
     if data[:4] != b"\x76\x2f\x31\x01":
-        raise ValueError("this is no OpenEXR file")
+        raise ValueError("this is not an OpenEXR file")
     if struct.unpack_from("<I", data, 4)[0] & 0x1A00:
-        raise ValueError("tiles, deep data and several parts are not read here")
+        raise ValueError("tiles, deep data and several parts are not supported")
     entries, at = {}, 8
     while data[at]:
         name, at = _text(data, at)
@@ -70,7 +70,7 @@ def read(data):
     width, height = right - left + 1, bottom - top + 1
     compression = entries["compression"][1][0]
     if compression not in _LINES:
-        raise ValueError(f"compression {compression} is not read here")
+        raise ValueError(f"compression {compression} is not supported")
     picture = Picture(width, height)
     picture.attributes = {name: value.decode("utf-8", "replace") for name, (kind, value) in entries.items() if kind == "string"}
     channels = _channels(entries["channels"][1])

@@ -35,7 +35,7 @@ def region_of(render, width, height):
     left, right = (int(numpy.float32(x) * numpy.float32(width)) for x in (render.border_min_x, render.border_max_x))
     bottom, top = (int(numpy.float32(y) * numpy.float32(height)) for y in (render.border_min_y, render.border_max_y))
     if right <= left or top <= bottom:
-        raise ValueError("the render region has no pixels (Ctrl Alt B takes it away)")
+        raise ValueError("the render region has no pixels (Ctrl Alt B removes it)")
     return Region((width, height), (right - left, top - bottom), left, bottom)
 
 

@@ -111,10 +111,10 @@ def check_balls(balls, surfaces, losses):
             continue
         name = surface.name
         if nearest <= ball.radius:
-            losses.refuse(f"is a lamp whose radius, {ball.radius:.3g}, reaches '{name}', {nearest:.3g} from its middle: what is "
+            losses.refuse(f"is a lamp whose radius, {ball.radius:.3g}, reaches '{name}', {nearest:.3g} from its middle: surfaces "
                           "inside would be black; make it smaller", ball.name)
         elif ball.is_disk and (ball.radius / nearest) ** 2 > _UNSAID:
-            losses.mention(f"is a ball here and a disk in Cycles, and as near as {nearest:.3g} to '{name}' with a radius of "
+            losses.mention(f"is a ball here and a disk in Cycles, and only {nearest:.3g} to '{name}' with a radius of "
                            f"{ball.radius:.3g}: up to {100 * (ball.radius / nearest) ** 2:.0f} % brighter there", ball.name)
 
 
@@ -133,7 +133,7 @@ def write_lamp(lamp, name, matrix, glb, losses):
     if not getattr(lamp, "normalize", True):
         losses.refuse("is a lamp whose power is not normalized by its size", name)
     if getattr(lamp, "use_temperature", False):
-        losses.refuse("is a lamp whose colour is a temperature; use a Blackbody node, or say the colour", name)
+        losses.refuse("is a lamp whose colour is a temperature; use a Blackbody node, or set the colour", name)
     shades = lamp.use_shadow and (own is None or getattr(own, "cast_shadow", True))
     if lamp.type == "AREA":
         _write_area(lamp, name, matrix, power, glb, losses, shades)
@@ -144,7 +144,7 @@ def write_lamp(lamp, name, matrix, glb, losses):
         if lamp.angle > _WIDEST_SUN * (1 + 1e-6):
             losses.refuse("is a sun wider than 120 degrees, whose light Cycles does not spread evenly over directions", name)
         elif lamp.angle > _WIDE_SUN * (1 + 1e-6):
-            losses.mention("is a sun wider than 90 degrees: as seen from surfaces that it does not stand straight above, it may be "
+            losses.mention("is a sun wider than 90 degrees: on surfaces that do not face it directly, it may be "
                            "2 % darker than in Cycles at 45 degrees and 8 % at 60", name)
         glb.lamp(name, matrix, "directional", sun_irradiance(strength, lamp.angle), color,
                  {"angle": degrees(lamp.angle)}, shades)
@@ -152,7 +152,7 @@ def write_lamp(lamp, name, matrix, glb, losses):
     radius = lamp.shadow_soft_size
     if radius <= 0:
         radius = 1e-4
-        losses.mention("has no radius; taken as 0.0001", name)
+        losses.mention("has no radius; 0.0001 is used", name)
     kind, cone = "point", None
     if lamp.type == "SPOT":
         kind, cone = "spot", cone_of(lamp)
@@ -172,8 +172,7 @@ def _write_area(lamp, name, matrix, power, glb, losses, shades):
     if max(radiance) <= 0:
         return
     if is_sheared(matrix):
-        losses.mention("is an area lamp that is sheared (by a parent with uneven scale): it has its power, and the shape that is "
-                       "seen in the viewport, which Cycles' may not be", name)
+        losses.mention("is an area lamp that is sheared (by a parent with uneven scale): its power is right, and its shape is that in the viewport, which Cycles' may not be", name)
     glb.area_lamp(name, matrix, shape, size, radiance, shades)
 
 

@@ -113,9 +113,9 @@ class Reader:
         if look.image is not None and look.image != use.node.image:
             self.losses.refuse("takes its colour and its alpha from different images", self.name)
         elif look.pixels is not None:
-            self.losses.refuse("has an image whose alpha cuts holes and whose colours nodes change", self.name)
+            self.losses.refuse("has an image whose alpha cuts holes and whose colours are changed by nodes", self.name)
         elif look.image is None:  # glTF multiplies the colour by the image, too
-            self.losses.mention("is shown in its image's colour: its alpha alone was wanted", self.name)
+            self.losses.mention("is shown in its image's colour: only its alpha was requested", self.name)
         self._use_image(use, look)
         look.image_alpha, look.pixels = True, None
         if not look.nearest:
@@ -152,8 +152,7 @@ class Reader:
         try:
             value = graph.evaluate(at)
         except Unknown as error:
-            self.losses.refuse(f"has a colour made by {error}, which is not evaluated; bake it into an image (Cycles, Bake, Diffuse, Color "
-                               "alone) and use that (left out, it is grey)", self.name)
+            self.losses.refuse(f"has a colour made by {error}, which is not evaluated; bake it into an image (Cycles, Bake, Diffuse, only Color) and use that (left out, it is grey)", self.name)
             return _GREY
         except OSError as error:
             self.losses.refuse(f"has an image that cannot be read ({error})", self.name)
@@ -295,7 +294,7 @@ def _placing(node, groups):
         return graph.constant(At(socket, groups)) if socket is not None else (0.0, 0.0, 0.0)
     place, turn, scale = numbers("Location"), numbers("Rotation"), numbers("Scale")
     if turn[0] or turn[1] or node.vector_type not in ("POINT", "TEXTURE", "VECTOR"):
-        raise Unknown(f"the node '{node.name}', which turns it out of its plane")
+        raise Unknown(f"the node '{node.name}', which rotates it out of its plane")
     c, s = cos(turn[2]), sin(turn[2])
     if node.vector_type == "TEXTURE":  # inverse translation, rotation and scale
         x, y = (1 / one if one else 0.0 for one in scale[:2])

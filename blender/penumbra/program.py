@@ -20,8 +20,8 @@ def find(wanted):
         if path:
             return path
         if name == wanted and wanted:
-            raise FileNotFoundError(f"there is no program {wanted}; say in the add-on's preferences where penumbra is")
-    raise FileNotFoundError("penumbra is not found; say in the add-on's preferences where it is, or set PENUMBRA")
+            raise FileNotFoundError(f"there is no program {wanted}; set the path of penumbra in the add-on's preferences")
+    raise FileNotFoundError("penumbra is not found; set its path in the add-on's preferences, or in the variable PENUMBRA")
 
 
 # Layers for all passes except those of single lights: with hundreds of lights these would take longer than the picture.
@@ -67,7 +67,7 @@ def _of_surfaces(settings):
 
 # Terms of the program's command line and files, and those of Blender's user interface that replace them.
 _IN_BLENDER = (
-    (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders all the same"),
+    (re.compile(r"Shadows would be wrong: --lenient .*"), "Shadows would be wrong; 'Lenient' renders the scene nevertheless"),
     (re.compile(r"--lenient"), "'Lenient'"),
     (re.compile(r"--light-samples( N)?"), "'Light samples'"),
     (re.compile(r"--pixel-samples( N)?"), "'Pixel samples'"),

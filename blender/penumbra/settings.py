@@ -12,7 +12,7 @@ class PenumbraPreferences(bpy.types.AddonPreferences):
 
     program: StringProperty(
         name="Program", subtype="FILE_PATH",
-        description="The penumbra program; empty: what the variable PENUMBRA says, or the one in PATH")
+        description="Path of the program penumbra; empty: the value of the variable PENUMBRA, or the program in PATH")
 
     def draw(self, _context):
         self.layout.prop(self, "program")
@@ -21,7 +21,7 @@ class PenumbraPreferences(bpy.types.AddonPreferences):
 class PenumbraSettings(bpy.types.PropertyGroup):
     exactness: EnumProperty(name="Shadows", default=program.EXACT, items=[
         (program.EXACT, "Exact", "The exact visible area of each light where a method can compute it; else light samples"),
-        (program.SAMPLES, "Light samples", "Points of each light, each of them exactly seen or not")])
+        (program.SAMPLES, "Light samples", "Points on each light; whether each is visible is decided exactly")])
     light_samples: IntProperty(name="Light samples", default=256, min=1, max=4096, description="Points of each light")
     method: StringProperty(name="Method", description="A shadow method's name (`penumbra methods` lists them); empty: "
                            "for each light the best")
@@ -29,29 +29,25 @@ class PenumbraSettings(bpy.types.PropertyGroup):
         (str(n * n), str(n * n), "") for n in range(1, 9)])
     pixel_filter: EnumProperty(name="Pixel filter", default=program.BOX, items=[
         (program.BOX, "Box", "The mean of a pixel's own view samples"),
-        (program.BLACKMAN_HARRIS, "Blackman-Harris", "As Cycles has it, neighbours' view samples included")])
+        (program.BLACKMAN_HARRIS, "Blackman-Harris", "As in Cycles, includes view samples of neighbouring pixels")])
     filter_width: FloatProperty(name="Width", default=1.5, min=1, max=10, description="Width of the filter, in pixels")
-    motion_samples: IntProperty(name="Moments", default=16, min=1, max=256, description="Moments of the open shutter, of which "
-                                "the picture is the mean")
-    light_cutoff: FloatProperty(name="Light cutoff", default=0, min=0, max=1, precision=4, description="Leaves a light out of "
-                                "pixels where, with nothing in between, it would be at most this share of all lights; 0: nowhere")
-    shading_normals: BoolProperty(name="Smooth shading", default=True, description="Cosines of smooth faces are those of "
-                                  "their normals, as in Cycles; shadows are always those of the triangles")
+    motion_samples: IntProperty(name="Moments", default=16, min=1, max=256, description="Moments at which the shutter is open; the picture is their mean")
+    light_cutoff: FloatProperty(name="Light cutoff", default=0, min=0, max=1, precision=4, description="Leaves out a light at pixels where, even if nothing blocked it, it would contribute at most this share of all lights; 0: nowhere")
+    shading_normals: BoolProperty(name="Smooth shading", default=True, description="Smooth faces are shaded by their normals, as in Cycles; shadows are always those of the triangles")
     world: EnumProperty(name="World", default=sky.SAMPLED, items=[
-        (sky.SAMPLED, "Light samples", "The world lights the scene, from so many directions: quick"),
+        (sky.SAMPLED, "Light samples", "The world lights the scene from this number of directions: quick"),
         (sky.EXACT, "Exact", "The exact share of the world that is seen, of one colour or a picture, unless Shadows are light "
          "samples; slow where there are many triangles, and every instance is copied"),
         (sky.SEEN, "Background only", "The world lights nothing")])
-    lenient: BoolProperty(name="Lenient", description="Leave out what would change shadows and cannot be done, with a "
-                          "warning, instead of refusing")
+    lenient: BoolProperty(name="Lenient", description="Leave out unsupported features that would change shadows, with a warning, instead of refusing")
     light_passes: BoolProperty(name="Passes of each light", default=True,
                                description="V, and each light's V and its light alone")
-    bake_size: IntProperty(name="Size", default=1024, min=4, max=8192, description="Texels a side of the baked image")
-    bake_margin: IntProperty(name="Margin", default=8, min=0, max=1024, description="Texels around the mesh's own")
+    bake_size: IntProperty(name="Size", default=1024, min=4, max=8192, description="Side of the baked image in texels")
+    bake_margin: IntProperty(name="Margin", default=8, min=0, max=1024, description="Margin around the mesh's texels, in texels")
     bake_what: EnumProperty(name="Bake", default="LIGHT", items=[
         ("LIGHT", "Light", "Light that a white surface reflects; multiplied by the base colour it gives the picture"),
         ("VISIBILITY", "Visibility", "How much of the first light is seen, from 0 to 1")])
-    device: StringProperty(name="Device", description="Part of a Vulkan device's name, its number, or cpu; empty: the best")
+    device: StringProperty(name="Device", description="Part of a Vulkan device's name, its index, or cpu; empty: the best")
 
 
 CLASSES = (PenumbraPreferences, PenumbraSettings)

@@ -62,7 +62,7 @@ def skies_of(world):
         return sky, sky
     share = At(node.inputs[0], groups).source()
     if share is None or share[0].type != "LIGHT_PATH" or share[1].name != "Is Camera Ray":
-        raise Unknown(f"the node '{node.name}', which does not part what lights from what the camera sees (Light Path, Is Camera Ray)")
+        raise Unknown(f"the node '{node.name}', which does not separate lighting from what the camera sees (Light Path, Is Camera Ray)")
     return tuple(_background(At(node.inputs[number], groups).source()) for number in (1, 2))
 
 
@@ -79,7 +79,7 @@ def _background(source):
     if value.attribute is not None:
         raise Unknown("a colour attribute")
     if value.image is not None and value.image.node.type != "TEX_ENVIRONMENT":
-        raise Unknown(f"the node '{value.image.node.name}', which is no Environment Texture")
+        raise Unknown(f"the node '{value.image.node.name}', which is not an Environment Texture")
     return Sky(tuple(float(x) * strength for x in value.factor), value.image, value.pixels)
 
 
@@ -101,7 +101,7 @@ def _mapped(at):
     if node.type == "TEX_COORD" and output.name in ("Generated", "Object") and getattr(node, "object", None) is None:
         return numpy.eye(3)
     if node.type != "MAPPING":
-        raise Unknown(f"the node '{node.name}', by which its picture is placed")
+        raise Unknown(f"the node '{node.name}', which places its picture and is not supported")
 
     def numbers(name, default):
         socket = find_socket(node.inputs, name)
@@ -110,7 +110,7 @@ def _mapped(at):
     place, turn, scale = (numbers(name, default) for name, default in
                           (("Location", (0.0, 0.0, 0.0)), ("Rotation", (0.0, 0.0, 0.0)), ("Scale", (1.0, 1.0, 1.0))))
     if place.any() and node.vector_type in ("POINT", "TEXTURE"):
-        raise Unknown(f"the node '{node.name}', which moves its picture (only turns are directions again)")
+        raise Unknown(f"the node '{node.name}', which translates its picture (only rotations are supported)")
     lengths = numpy.abs(scale)
     if lengths.min() <= 0 or lengths.max() > lengths.min() * (1 + 1e-5):
         raise Unknown(f"the node '{node.name}', which scales its picture unevenly")
@@ -187,7 +187,7 @@ def _write(lights, seen, name, wanted, glb, path, losses):
         losses.refuse("is a world with a colour below 0", name)
         return (0.0, 0.0, 0.0)
     if seen.image is not None and (seen is not lights or wanted == SEEN):
-        raise Unknown("a picture that the camera alone sees")
+        raise Unknown("a picture that only the camera sees")
     if not lights.is_dark and wanted != SEEN:
         if lights.image is None:
             file, matrix = None, numpy.eye(4).tolist()

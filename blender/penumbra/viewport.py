@@ -242,7 +242,7 @@ class ShownInViews:
             self._view().said = str(error)
         except Exception as error:
             traceback.print_exc()
-            self._view().said = f"the add-on failed ({type(error).__name__}: {error}); the console says where"
+            self._view().said = f"the add-on failed ({type(error).__name__}: {error}); the console has the details"
 
     def view_draw(self, context, depsgraph):
         view = self._view()

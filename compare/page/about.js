@@ -79,7 +79,7 @@ const factsTable = (facts) => make("div", { class: "scroll" }, make("table", { c
 function methodText(name, method) {
   return make("details", { id: methodPlace(name) }, make("summary", {}, name),
     make("p", {}, `${method.family}-based; after ${method.paper}. Exact for ${method.exactFor}. Answers with ${method.output}.`,
-      method.onRequest ? " Compared on request alone: it takes long, or is there for others to be held against." : "", " ",
+      method.onRequest ? " Compared only on request: it is slow, or serves as a reference for others." : "", " ",
       make("code", {}, `penumbra methods ${name}`), " says the same; its derivation is in ", make("code", {}, `docs/${name}.md`), "."),
     tableOf("Options", ["Option", "Values", "Default", "What it does"],
       method.options.map((option) => [option.name, option.values, option.default, option.help])));
@@ -104,7 +104,7 @@ function showMachine() {
     ["Device", first.device], ["System", machine.system], ["Program", `penumbra ${report.version}`],
     ["Light samples", sampled && `${sampled.lightSamples}, pattern ${sampled.samplePattern}`],
     ["Reference", `${metrics.reference.method}, ${referenceQuestion(" (the same)")}`],
-    ["Compared pixels", report.sampledPixels && `${countText(report.sampledPixels)} chosen ones`],
+    ["Compared pixels", report.sampledPixels && `${countText(report.sampledPixels)} chosen pixels`],
     ["Reading the scene", secondsText(first.seconds.load)], ["View samples", secondsText(first.seconds.view)]].filter(([, value]) => value)));
 }
 

@@ -43,10 +43,10 @@ function runsTable(name, runs) {
   };
   const rows = kCauses.filter((cause) => runs[cause]).map((cause) => {
     const { words, rmse, reached, runs: made } = runs[cause];
-    return row(cause, words + (reached === false ? "; the runs do not lead there yet: this is the last one’s" : ""), rmse, made);
+    return row(cause, words + (reached === false ? "; the runs have not converged: this is the value of the last one" : ""), rmse, made);
   });
-  if (runs.allButView) rows.push(row(kAllButView, "what of the others can be combined", runs.allButView.rmse, [runs.allButView]));
-  rows.push(row(kAllAtOnce, "what of the above can be combined", runs.together.rmse, [runs.together]));
+  if (runs.allButView) rows.push(row(kAllButView, "all of the others that can be combined", runs.allButView.rmse, [runs.allButView]));
+  rows.push(row(kAllAtOnce, "all of the above that can be combined", runs.together.rmse, [runs.together]));
   return tableOf(`What was run for ${name}`, ["Repaired", "How, or why not", "RMSE without it", "Pixels that it changes", "Runs"], rows);
 }
 
@@ -72,7 +72,7 @@ function budgetUnder(light, largest) {
   return [causesTable(light, explained, largest), ...explained.flatMap((result) => {
     const own = result.lights[light], name = result.entry + under(light);
     return [...repairPictures(name, methodOf(result).repairs[light] ?? [], own),
-      folded(`How the budget of ${name} was found out`, runsTable(name, own.errorBudgetRuns), make("p", { class: "note" },
+      folded(`How the budget of ${name} was measured`, runsTable(name, own.errorBudgetRuns), make("p", { class: "note" },
         `If causes added up, ${signedText(own.errorBudgetRuns.ifCausesAddedUp)} would be left.`))];
   })];
 }
@@ -83,8 +83,8 @@ function errorBudget() {
   const largest = {  // maxima over all lights, so that tables can be compared
     change: Math.max(...all.flatMap(({ errorBudget: budget }) => kCauses.map((cause) => Math.abs(budget[cause] ?? 0)))),
     error: Math.max(...all.flatMap(({ errorBudget: budget, errorBudgetRuns: runs }) => [runs.rmse, budget.remainder ?? 0])) };
-  return [make("h3", { id: "error-budget" }, "Error budget"), make("p", { class: "note" }, "Over each light’s judged pixels. A dash: nothing separates this cause "
-    + "for that method. The changes need not add up, since causes hide and feed one another; the remainder is what is left when all that can be combined "
-    + "is repaired at once."), ...report.lights.flatMap((_, light) =>
+  return [make("h3", { id: "error-budget" }, "Error budget"), make("p", { class: "note" }, "Over each light’s judged pixels. A dash: this cause cannot be separated "
+    + "for that method. The changes need not add up, since causes mask and amplify one another; the remainder is the error when all causes that can be combined "
+    + "are repaired at once."), ...report.lights.flatMap((_, light) =>
     (light === 0 ? budgetUnder(0, largest) : [folded(`Error budget${under(light)}`, budgetUnder(light, largest))]))];
 }

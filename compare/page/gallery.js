@@ -82,7 +82,7 @@ function showFirstLook() {
   Object.assign(look.dataset, { left: worst, right: beside });
   filled(look.querySelector("canvas"), { width: report.width, height: report.height,
     "aria-label": `V${under(0)} by ${name(worst)} on the left of the line, by ${name(beside)} on the right` }, []);
-  look.querySelector("h2").textContent = alone ? "The method beside the reference" : "The worst beside the best";
+  look.querySelector("h2").textContent = alone ? "The method and the reference" : "The worst and the best method";
   look.querySelector("p").append(`V, how much of the light each point sees${under(0)}: on the left of the line `, make("b", {}, name(worst)),
     `, RMSE ${errorText(rmse(worst))}; on the right `, make("b", {}, name(beside)), alone ? ", the reference." : `, RMSE ${errorText(rmse(best))}.`);
   look.hidden = false;

@@ -96,11 +96,11 @@ function classTables() {
     const parts = (caption, of, samePixels = true) =>
       partsTable(`${rmse} ${caption}`, (result) => result.lights[light] && of(result.lights[light]), samePixels);
     return [
-      parts("by what happens at the pixel: all, some or none of the light is seen; another object hides some of it (cast), or the "
-        + "one that is seen does (self). + is too bright.", (result) => classes(result.classes)),
-      parts("in penumbrae, by how many pixels wide they are there.", (result) => ranges(result.penumbraWidth?.pixels)),
-      parts("in penumbrae, by how many texels of the method's map wide they are there.", (result) => ranges(result.penumbraWidth?.texels), false),
-      parts("in shadows, by how many pixels away the nearest is that hides some of the light.", (result) => ranges(result.contactDistance?.pixels)),
+      parts("by class of pixel: all, some or none of the light is visible; another object hides some of it (cast), or the object "
+        + "visible at the pixel does (self). + is too bright.", (result) => classes(result.classes)),
+      parts("in penumbrae, by their width there, in pixels.", (result) => ranges(result.penumbraWidth?.pixels)),
+      parts("in penumbrae, by their width there, in texels of the method's map.", (result) => ranges(result.penumbraWidth?.texels), false),
+      parts("in shadows, by the distance in pixels of the nearest object that hides some of the light.", (result) => ranges(result.contactDistance?.pixels)),
     ];
   });
 }
@@ -121,8 +121,8 @@ function eyeTables() {
   });
   const separated = succeeded.filter((result) => result.separation);
   const share = (value) => numberCell(value, percentText);
-  return [...eyes, tableOf("What separation costs the beauty of methods that know V alone: V · ∫G in place of ∫G V. RMSE of the luminance of judged pixels, "
-    + "relative to its mean: of the method; of what separation alone does to the reference’s own V; of the errors of V alone; and by how much the "
+  return [...eyes, tableOf("The error of beauty that methods with V alone make by computing V · ∫G in place of ∫G V (separation). RMSE of the luminance of judged pixels, "
+    + "relative to its mean: of the method; of separation alone, with the reference’s V; of the errors of V alone; and by how much the "
     + "method’s RMSE changes when separation alone is repaired.",
   ["Method", "Beauty", "Separation alone", "Errors of V alone", "Change without separation"],
   separated.map((result) => [result.entry, share(result.beautyError.relativeRmse), share(result.separation.alone.relativeRmse),
@@ -137,7 +137,7 @@ function pairTables() {
     const same = (result) => result.lights[light].sameSamples;
     const of = several ? ` Under light “${report.lights[light].name}”.` : "";
     return [
-      tableOf(`On how many (view sample, light sample) pairs does a method answer other than ${raysLabel()}, the same ones?${of}`,
+      tableOf(`On how many pairs of view sample and light sample does a method's answer differ from that of ${raysLabel()} on the same light samples?${of}`,
         ["Method", "Differing pairs", "of all pairs", "share", "of pairs in penumbrae", "share", "RMSE of V"],
         known.map((result) => {
           const { pairs, pairsAll, pairsDiffering, error } = same(result);
@@ -145,7 +145,7 @@ function pairTables() {
             share(pairsDiffering, pairs), errorCell(error?.rmse)];
         })),
       tableOf(`Who is right where they differ? Decided by exact arithmetic, which does not round.${of}`,
-        ["Method", "Pairs decided", "of those that differ", "Method right", "Rays right", "Ties read by rule"],
+        ["Method", "Pairs decided", "of those that differ", "Method right", "Rays right", "Ties decided by rule"],
         known.filter((result) => same(result).pairsDecided > 0).map((result) => {
           const { pairsDecided, pairsDecidedShare, pairsMethodRight, pairsReferenceRight, pairsZeroPredicate } = same(result);
           return [result.entry, countCell(pairsDecided), numberCell(pairsDecidedShare, percentText), countCell(pairsMethodRight),
@@ -153,7 +153,7 @@ function pairTables() {
         })),
     ];
   }).filter(Boolean);
-  return tables.length === 0 ? [] : [...tables, make("p", { class: "note" }, "Methods with a mask are held against rays on their own light samples, so that equal "
+  return tables.length === 0 ? [] : [...tables, make("p", { class: "note" }, "Methods with a mask are compared with rays on their own light samples, so that equal "
     + "is compared with equal. A tie: the line of sight meets an edge or a corner exactly; the definition of visibility says how to read it. Where too "
     + "many pairs differ, an evenly spaced sample of them is decided.")];
 }

@@ -166,7 +166,7 @@ class Comparison {
       sort_into_classes(session_, truths_, progress_);
     } catch (const Error& error) {  // a reference of areas supports lights that rays do not
       if (error.code() == ExitCode::interrupted) throw;
-      warn(fmt::format("errors are not divided by the object that casts the shadow: {}", error.what()));
+      warn(fmt::format("errors are not listed separately by the object that casts the shadow: {}", error.what()));
     }
     reference_beauty_ = std::move(done.beauty);
     if (std::ranges::any_of(entries_, [](const Entry& e) { return e.description.output == Output::scalar; }) &&
@@ -182,7 +182,7 @@ class Comparison {
     if (mask_bytes() > kMostRayBytes) {
       warn(
           fmt::format("masks of rays on the same light samples would take {} MiB: pairs are not compared; "
-                      "--reference-samples same asks for it all the same",
+                      "--reference-samples same compares them nevertheless",
                       mask_bytes() >> 20));
       return;
     }
@@ -224,7 +224,7 @@ class Comparison {
     }
     entries_ = std::move(kept);
     if (entries_.empty() && !report_.metrics.left_out.empty())
-      throw UsageError("every method is left out, since it takes longer than {:.0f} seconds: name one (--methods)",
+      throw UsageError("all methods are left out, since each takes longer than {:.0f} seconds: request one by name (--methods)",
                        options_.most_seconds);
   }
 
@@ -233,8 +233,7 @@ class Comparison {
     const auto has_budget = [](const visibility::OptionDescription& option) { return option.name == "budget"; };
     const bool bounded = std::ranges::any_of(entry.description.options, has_budget);
     warn(
-        fmt::format("{} is left out: a run of it would take about {:.0f} seconds here, and methods that are not named "
-                    "have {:.0f}; ask for it by name (--methods){}",
+        fmt::format("{} is left out: a run would take about {:.0f} seconds here, and the limit for methods that are not requested by name is {:.0f}; request it by name (--methods){}",
                     entry.label, seconds, options_.most_seconds,
                     bounded ? fmt::format(", or bound its texels: {}:budget=4096", entry.label) : ""));
     report_.metrics.left_out.push_back({entry.label, seconds, options_.most_seconds});
@@ -246,7 +245,7 @@ class Comparison {
   /// runs, and the device's exception is rethrown once everything is written.
   void run_or_report(const Entry& entry) {
     if (hang_) {
-      report_failure(entry, {ExitCode::resource, "not run, since the device does not answer any more"});
+      report_failure(entry, {ExitCode::resource, "not run, since the device no longer answers"});
       return;
     }
     try {
@@ -347,7 +346,7 @@ class Comparison {
         }
       } catch (const render::DeviceDoesNotAnswer&) {
         hang_ = std::current_exception();
-        warn(fmt::format("{}: no error budget, since the device does not answer any more", entries_[i].label));
+        warn(fmt::format("{}: no error budget, since the device no longer answers", entries_[i].label));
       }
     }
   }

@@ -120,7 +120,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
       return visibility::can_span(entry.description.span, light, session.floats);
     });
     if (chosen.from_group && !(can_do(entry.description, session.lights) && can_hold)) {
-      warn(fmt::format("{} is left out: it cannot do every light of the scene", entry.label));
+      warn(fmt::format("{} is left out: it does not support every light of the scene", entry.label));
       continue;
     }
     if (chosen.from_group && needs_device(chosen.name, chosen.options)) {
@@ -150,13 +150,11 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
     entries = std::move(costly_entries);
   else if (!costly.empty())
     warn(
-        fmt::format("{} left out: maps see a sphere as up to 54 disks and a dome as many suns, each with maps of its "
-                    "own; name a method to have it",
+        fmt::format("{} left out: image-based methods replace a sphere by up to 54 disks and a dome by many suns, each with separate maps; request a method by name to include it",
                     fmt::join(costly, ", ")));
   if (!slow.empty())
     warn(fmt::format(
-        "{} left out: a picture takes seconds on {}, which is no GPU; name a method, or the group image, to "
-        "have it",
+        "{} left out: a picture takes seconds on {}, which is not a GPU; request a method, or the group image, by name to include it",
         fmt::join(slow, ", "), machine.device().info().name));
   if (!without_device.empty()) {
     if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);
@@ -164,7 +162,7 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
   }
   if (entries.empty()) {
     throw InputError(
-        "none of the chosen methods can do the lights of {}; name one that can with --methods (see "
+        "none of the chosen methods supports the lights of {}; choose one that does with --methods (see "
         "`penumbra methods`)",
         session.scene.name);
   }
@@ -175,8 +173,7 @@ void require_explainable(std::span<const MethodEntry> methods) {
   if (std::ranges::any_of(methods, [](const MethodEntry& m) { return describe_method(m.name).repairs != nullptr; }))
     return;
   throw UsageError(
-      "--error-budget: the chosen methods are the references of others, whose errors have no causes: name another one "
-      "with --methods (see `penumbra methods`)");
+      "--error-budget: the chosen methods are references, whose errors are not divided by cause: choose another one with --methods (see `penumbra methods`)");
 }
 
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options) {

@@ -33,8 +33,8 @@ using visibility::RepairRun;
 /// Returns the reason why a light cannot be divided into parts; empty if it can.
 std::string why_whole(const Light& light) {
   if (!visibility::is_planar(light.kind))
-    return fmt::format("the light is a {}: only what has a plane is cut in parts", visibility::name_of(light.kind));
-  if (light.texture) return "the light has a texture: its parts would have none";
+    return fmt::format("the light is a {}: only lights in one plane are divided into parts", visibility::name_of(light.kind));
+  if (light.texture) return "the light has a texture, which its parts would lack";
   return {};
 }
 
@@ -149,7 +149,7 @@ BudgetAnswer measure_error_budget(const BudgetQuestion& question, double limit, 
       if (repair.cause == ErrorCause::samples && run.light_samples != 0 &&
           run.light_samples <= question.light.sample_count()) {
         part.words =
-            fmt::format("it has {} light samples, which is as many as the repair has", question.light.sample_count());
+            fmt::format("it already has {} light samples, as many as the repair uses", question.light.sample_count());
         break;
       }
       BudgetRun& made = part.runs.emplace_back(BudgetRun{run});

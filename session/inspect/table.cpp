@@ -85,7 +85,7 @@ std::string watertight(const mesh::Diagnosis& d) {
 }
 
 std::string_view watertight_remark(const mesh::Diagnosis& d) {
-  if (d.closed_as_wound) return "every point has a whole winding number: inside or outside";
+  if (d.closed_as_wound) return "every point has an integer winding number: it is inside or outside";
   return d.closed ? "closed once neighbours' windings agree; as it is wound now it is not" : "";
 }
 
@@ -108,7 +108,7 @@ std::string all_rows(const ObjectReport& object, std::size_t list_limit) {
                           figure(d.shortest_edge, 3)));
   if (d.vertices_lost + d.triangles_lost > 0) {
     text += row("lost in float", grouped(d.vertices_lost),
-                fmt::format("vertices fall on others; {} triangles lose their area", grouped(d.triangles_lost)));
+                fmt::format("vertices become equal to others; {} triangles lose their area", grouped(d.triangles_lost)));
   }
   if (object.silhouettes) {
     text += row("silhouette edges", fmt::format("{:.0f}", object.silhouettes->mean),
@@ -182,7 +182,7 @@ std::string report_table(const RepairReport& repaired) {
   std::string text =
       fmt::format("{}: {} triangles\n", on_one_line(repaired.file.string()), grouped(repaired.triangles));
   for (const mesh::RepairStep& step : repaired.done) text += fmt::format("  done: {}\n", wrapped(step.what, 8));
-  if (repaired.done.empty()) text += "  done: nothing, there was nothing to do\n";
+  if (repaired.done.empty()) text += "  done: nothing needed repair\n";
   for (const std::string& what : repaired.left) text += fmt::format("  left: {}\n", wrapped(what, 8));
   return text + fmt::format("  read again: watertight {}; what is wrong: {}\n", watertight(repaired.written),
                             wrapped(what_is_wrong(repaired.written), 14));

@@ -29,8 +29,8 @@ Exposure parse_exposure(const std::string& text) {
     const auto written = written_exposure(text);
     if (written) return {Exposure::Kind::fixed, *written};
     throw InputError("--exposure {}: {}", text,
-                     is_picture(text) ? "its header does not say how it was exposed (penumbra.exposure)"
-                                      : "there is no such picture");
+                     is_picture(text) ? "its header has no exposure (penumbra.exposure)"
+                                      : "this picture does not exist");
   }
   const auto stops = parse_number(text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text));
   if (!stops || !(std::abs(*stops) <= 100)) {

@@ -60,8 +60,7 @@ bool FrameRenderer::has_lens(const scenes::Scene& scene) {
   if (surface_ || camera == scene.cameras.end() || !camera->lens) return false;
   if (picture_.frame.pixel_side > 1 || !picture_.frame.moments.empty()) return true;
   picture_.notes.push_back(fmt::format(
-      "camera \"{}\" has an aperture: a pixel's one view sample looks through the lens's middle, where everything is "
-      "sharp (--pixel-samples N)",
+      "camera \"{}\" has an aperture: with one view sample per pixel, it looks through the lens's middle, and everything is sharp; blur needs --pixel-samples N",
       camera->name));
   say_once({picture_.notes.back()});
   return false;
@@ -173,7 +172,7 @@ void FrameRenderer::render_mean(scenes::Scene scene, bool by_lens) {
   for (const std::string& light : picture_.mean->lights()) {
     if (std::ranges::find(own, light) != own.end()) continue;
     picture_.notes.push_back(fmt::format(
-        "light \"{}\" is not there at the frame's own time: R G B have its light, and it has no layer", light));
+        "light \"{}\" does not exist at the frame's own time: R G B contain its light, but it has no layer", light));
     say_once({picture_.notes.back()});
   }
 }

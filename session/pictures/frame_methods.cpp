@@ -128,7 +128,7 @@ void FrameRenderer::say_unused_samples() {
   const auto has_none = [&](const WholeLight& whole) { return samples_of(lights, whole) == 0; };
   if (asked == nullptr || !std::ranges::all_of(whole_lights(session().lights), has_none)) return;
   picture_.notes.push_back(
-      fmt::format("{}: {} gives areas, and takes no light samples", asked, done_.labels.front().description.name));
+      fmt::format("{}: {} computes areas, and uses no light samples", asked, done_.labels.front().description.name));
   say_once({picture_.notes.back()});
 }
 

@@ -229,8 +229,7 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   if (triangles >= kFloatNumbers) {
     image.attributes["penumbra.triangle"] = "id + 1 = triangle.X + 16777216 * triangle_high.X; 0: no triangle";
     warnings.push_back(
-        fmt::format("{} triangles: more than a float counts, so that triangle.X has the number modulo "
-                    "16777216, and triangle_high.X how often that goes into it (id has it whole)",
+        fmt::format("{} triangles: more than a float can count, so triangle.X has the number modulo 16777216, and triangle_high.X the quotient (id has the whole number)",
                     triangles));
   }
   const Mattes* const mattes = content.mattes;
@@ -254,7 +253,7 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   channels.check();
   if (const std::uint64_t count = write_exr(file, image); count != 0) {
     warnings.push_back(
-        fmt::format("{} of {} values were beyond 65504, the largest that 16 bits hold, and are that in {}", count,
+        fmt::format("{} of {} values were above 65504, the largest 16-bit float, and are limited to it in {}", count,
                     std::uint64_t{image.width} * image.height * image.channels.size(), file.path().string()));
   }
   return warnings;

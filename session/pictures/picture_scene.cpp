@@ -57,7 +57,7 @@ class MomentFiles {
     PictureScene read = read_picture_scene(run, std::nullopt, request_);
     const auto size = size_of(read.scene, run.camera);  // a missing camera is reported by the session
     if (size_ && size && size != size_)
-      throw InputError("{}: a picture of {}x{} pixels, where SCENE's has {}x{}; --size says how many all have",
+      throw InputError("{}: a picture of {}x{} pixels, but SCENE's has {}x{}; set one size for all with --size",
                        run.scene.string(), size->first, size->second, size_->first, size_->second);
     if (origin_) read.scene.origin = origin_;
     return read;

@@ -25,7 +25,7 @@ double PixelFilter::share(double offset) const {
 PixelFilter parse_filter(const std::string& name, const std::string& width) {
   if (name.empty() || name == "box") {
     if (!width.empty())
-      throw UsageError("--filter-width {}: a box is one pixel wide; of --pixel-filter blackman-harris alone", width);
+      throw UsageError("--filter-width {}: only for --pixel-filter blackman-harris; a box is one pixel wide", width);
     return {};
   }
   if (name != "blackman-harris") throw UsageError("--pixel-filter {}: expected box or blackman-harris", name);

@@ -33,7 +33,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
       parse_count(options.pixel_samples, "--pixel-samples", 64, "a number from 1 to 64, such as 4, 9 or 16");
   while (request.pixel_side * request.pixel_side < samples) ++request.pixel_side;
   if (const std::uint32_t square = request.pixel_side * request.pixel_side; square != samples)
-    spdlog::warn("--pixel-samples {}: {}, the next square number, for they lie on a square grid", samples, square);
+    spdlog::warn("--pixel-samples {}: {}, the next square number, since view samples are on a square grid", samples, square);
   request.filter = parse_filter(options.pixel_filter, options.filter_width);
   if (request.filter.kind != PixelFilter::Kind::box && samples == 1)
     throw UsageError("--pixel-filter {} needs several view samples a pixel: --pixel-samples 4 or more",
@@ -57,7 +57,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
           "0.001",
           options.light_cutoff);
     if (*cutoff > 0 && !options.bits.empty())
-      throw UsageError("--bits: every pair's answer is wanted; leave out --light-cutoff");
+      throw UsageError("--bits needs the answers of all pairs; leave out --light-cutoff");
     request.light_cutoff = *cutoff;
   }
   request.moments = parse_count(options.motion_samples, "--motion-samples", 256, "a number from 1 to 256");
@@ -68,7 +68,7 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
   request.shutter_frames = *shutter;
   if (!options.bits.empty() && (samples > 1 || request.moments > 1 || !options.moments.empty()))
     throw UsageError(
-        "--bits: answers are of pixels' centres at one moment; leave out --pixel-samples, --motion-samples and "
+        "--bits writes answers at pixels' centres at one moment; leave out --pixel-samples, --motion-samples and "
         "--moment");
   if (request.moments > 1 && options.moments.empty() && options.frames.empty() && !options.frame)
     throw UsageError("--motion-samples {} needs a frame: --frame or --frames", options.motion_samples);
@@ -84,7 +84,7 @@ void check_moments(const PictureOptions& options) {
   if (options.run.camera == "all") throw UsageError("--moment: the moments are read for one camera; name one");
   constexpr std::size_t kMost = 256;
   if (options.moments.size() > kMost)
-    throw UsageError("--moment: {} files; up to {} moments are taken", options.moments.size(), kMost);
+    throw UsageError("--moment: {} files; expected at most {}", options.moments.size(), kMost);
 }
 
 /// Reads --aperture and --focus-distance.
@@ -103,11 +103,10 @@ void parse_lens(const PictureOptions& options, PictureRequest& request) {
       length(options.aperture, "--aperture", "a lens's radius above 0, such as 0.02, or 0 for none", true);
   if (*request.aperture > 0 && request.pixel_side == 1 && request.moments == 1)
     throw UsageError(
-        "--aperture {}: a pixel's one view sample looks through the lens's middle, where everything is sharp; "
-        "blur needs --pixel-samples 4 or more",
+        "--aperture {}: with one view sample per pixel, it looks through the lens's middle, and everything is sharp; blur needs --pixel-samples 4 or more",
         options.aperture);
   if (*request.aperture == 0 && request.focus_distance)
-    throw UsageError("--focus-distance {}: of which lens? --aperture 0 is none", options.focus_distance);
+    throw UsageError("--focus-distance {}: there is no lens with --aperture 0", options.focus_distance);
 }
 
 /// Throws UsageError for a moment between frames, which has no number for a file's name.
@@ -117,7 +116,7 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   for (const auto& file : {options.run.out, options.stats, options.png, options.bits}) {
     if (has_frame_number(file))
       throw UsageError(
-          "{}: frame {} lies between two frames and has no number for a file's name; leave out the number's place",
+          "{}: frame {} is between two frames and has no whole number for the file's name; remove the placeholder for the number",
           file.string(), *frame);
   }
 }
@@ -133,8 +132,7 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
     return text == "shared" ? InstanceUse::shared : InstanceUse::automatic;
   if (text == "shared")
     throw UsageError(
-        "--instances shared: {} looks at more than lies between a view sample and the light; choose "
-        "another --method",
+        "--instances shared: {} needs more than the triangles between a view sample and the light; choose another --method",
         wish.method);
   return InstanceUse::copies;
 }
@@ -145,12 +143,12 @@ const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_samples)
     return std::holds_alternative<scenes::Sphere>(light.shape) || std::holds_alternative<scenes::Dome>(light.shape) ||
            std::holds_alternative<scenes::Pieces>(light.shape);
   };
-  if (std::ranges::any_of(scene.lights, is_round)) return "takes suns and lights in one plane alone";
+  if (std::ranges::any_of(scene.lights, is_round)) return "supports only suns and lights in one plane with shared meshes";
   if (std::ranges::any_of(scene.lights, [](const auto& light) { return !light.unshaded_by.empty(); }))
-    return "takes no lights with casters of their own";
+    return "supports no lights with their own lists of casters with shared meshes";
   const auto is_open = [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; };
-  if (std::ranges::any_of(scene.objects, is_open)) return "takes no surfaces with holes and no translucent ones";
-  return pixel_samples > 1 ? "takes one view sample a pixel" : nullptr;
+  if (std::ranges::any_of(scene.objects, is_open)) return "supports no surfaces with holes and no translucent ones with shared meshes";
+  return pixel_samples > 1 ? "supports one view sample per pixel with shared meshes" : nullptr;
 }
 
 bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances, InstanceUse use,
@@ -159,7 +157,7 @@ bool needs_copies(const scenes::Scene& scene, const scenes::Instances& instances
   const bool passes = passes_triangles(wish.method, wish.options);
   const char* const why = passes ? cannot_pass(scene, pixel_samples) : nullptr;
   if (use == InstanceUse::shared) {
-    if (why != nullptr) throw UsageError("--instances shared: {} {} there", wish.method, why);
+    if (why != nullptr) throw UsageError("--instances shared: {} {}", wish.method, why);
     return false;
   }
   return why != nullptr || use == InstanceUse::copies || triangle_count(scene, instances) <= scenes::kFewCopies ||
@@ -221,10 +219,10 @@ void set_lens(scenes::Scene& scene, const PictureRequest& request, const std::st
       continue;
     }
     if (!request.aperture && !one.lens)
-      throw UsageError("--focus-distance: of which lens? Camera \"{}\" has none; --aperture says how wide it is",
+      throw UsageError("--focus-distance: camera \"{}\" has no lens; set its radius with --aperture",
                        one.name);
     if (!request.focus_distance && !one.lens)
-      throw UsageError("--aperture: camera \"{}\" does not say at what distance it is sharp; --focus-distance does",
+      throw UsageError("--aperture: camera \"{}\" has no focus distance; set it with --focus-distance",
                        one.name);
     one.lens = {request.aperture ? *request.aperture : one.lens->radius,
                 request.focus_distance ? *request.focus_distance : one.lens->focus_distance};

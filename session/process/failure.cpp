@@ -45,7 +45,7 @@ Failure describe_current_exception() {
     // The amount in use cannot be reported any more: unwinding has released the memory.
     give_back_memory();
     const MemoryRoom room = memory_room();
-    return {ExitCode::resource, fmt::format("out of memory ({} is all that {}, now that everything is given back); "
+    return {ExitCode::resource, fmt::format("out of memory ({} is the most that {}, after everything was released); "
                                             "choose a smaller --size, fewer --light-samples or a smaller scene",
                                             in_bytes(room.bytes), room.limit)};
   } catch (const std::exception& error) {

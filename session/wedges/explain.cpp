@@ -197,10 +197,10 @@ void print_explanation(const Explanation& explanation, const std::filesystem::pa
   fmt::print("{}, triangle {}, p = {}\n", explanation.object, explanation.sample.carrier,
              text_of(glm::dvec3(explanation.sample.p)));
   if (explanation.kind == PixelClass::horizon) {
-    fmt::print("{:.6f} of the light is above the tangent plane: no sum gives more\n", explanation.center->above);
+    fmt::print("{:.6f} of the light is above the tangent plane: V cannot be larger\n", explanation.center->above);
   }
   if (explanation.texels.x > 0) {
-    fmt::print("areas and V are weighed by the light's texture of {}x{} texels\n", explanation.texels.x,
+    fmt::print("areas and V are weighted by the light's texture of {}x{} texels\n", explanation.texels.x,
                explanation.texels.y);
   }
   if (explanation.touching) fmt::print("something touches the light itself: no sum over edges is exact\n");

@@ -129,10 +129,10 @@ ordered_json coverage_json(const CoverageOutcome& coverage) {
 void print_coverage(const CoverageOutcome& coverage) {
   const CoverageFigures figures = figures_of(coverage);
   if (figures.touching > 0) {
-    fmt::print("coverage: not checked at {} view samples, something touches the light\n", figures.touching);
+    fmt::print("coverage: not checked at {} view samples, where a caster touches the light\n", figures.touching);
     return;
   }
-  if (coverage.textured) fmt::print("coverage is weighed by the light's texture\n");
+  if (coverage.textured) fmt::print("coverage is weighted by the light's texture\n");
   fmt::print("coverage at {} view samples: the receiver's silhouettes are {:.1e} from the triangles at most\n",
              figures.samples, figures.worst_layers);
   if (figures.single > 0 && !coverage.hidden.empty()) {

@@ -382,9 +382,9 @@ class Programs(unittest.TestCase):
         self.assertEqual(program.messages(text), (["a: b"], "c"))
         text = "".join(f"penumbra: warning: /tmp/x/moment-{i}.glb: 'Block' is metallic\n" for i in (1, 2))
         self.assertEqual(program.messages(text, "/tmp/x/scene.glb", "/tmp/x/moment-1.glb", "/tmp/x/moment-2.glb"), (["'Block' is metallic"], None))
-        text = "penumbra: error: /tmp/x/scene.glb: 'Pane' lets light through. Shadows would be wrong: --lenient renders all the same, and warns"
+        text = "penumbra: error: /tmp/x/scene.glb: 'Pane' lets light through. Shadows would be wrong: --lenient renders it nevertheless, with a warning"
         self.assertEqual(program.messages(text, "/tmp/x/scene.glb")[1],
-                         "'Pane' lets light through. Shadows would be wrong; 'Lenient' renders all the same")
+                         "'Pane' lets light through. Shadows would be wrong; 'Lenient' renders the scene nevertheless")
 
     def test_workspaces_go(self):
         with program.Workspace() as workspace:

@@ -90,7 +90,7 @@ class Farm(unittest.TestCase):
         """Blender saves no frame after one that failed of several on one command line."""
         run, written = self.frames("broken", "-f", "1,2,3")
         self.assertEqual((run.returncode, written), (1, [1]), run.stdout)
-        self.assertIn("Frame 3: not rendered, for frame 2 failed", run.stdout)
+        self.assertIn("Frame 3: not rendered, because frame 2 failed", run.stdout)
         self.assertIn("this process ends with code 1", run.stdout)
 
     def test_an_animation_fails_with_its_frame(self):

@@ -87,8 +87,8 @@ def check_tables(page):
         same(horizon, [error_row(entry, light["horizonError"]) for entry, light in of] if of[0][1]["horizonPixels"] else [], f"horizon {under}")
         same(page.values(f"RMSE of V {under} by what happens"), [[entry, *(part["rmse"] for part in light["classes"].values())] for entry, light in of],
              f"classes {under}")
-        for caption, pick in (("in penumbrae, by how many pixels", lambda light: light["penumbraWidth"]["pixels"]),
-                              ("in penumbrae, by how many texels", lambda light: light["penumbraWidth"]["texels"]),
+        for caption, pick in (("in penumbrae, by their width there, in pixels", lambda light: light["penumbraWidth"]["pixels"]),
+                              ("in penumbrae, by their width there, in texels", lambda light: light["penumbraWidth"]["texels"]),
                               ("in shadows", lambda light: light["contactDistance"]["pixels"])):
             same(page.values(f"RMSE of V {under} {caption}"), [[entry, *(part["rmse"] for part in pick(light))] for entry, light in of if pick(light)],
                  f"{caption} {under}")

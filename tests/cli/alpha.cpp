@@ -237,7 +237,7 @@ TEST_F(AlphaSurfaces, PanesAreLitToo) {
   EXPECT_THAT(outcome.err, Not(HasSubstr("no visible point")));
   translucent(1);
   gltf.at("/nodes/3/translation") = {0, 0.25, 0};  // below the light "Low"
-  EXPECT_THAT(render({"--light-samples", "16"}).err, HasSubstr("no visible point is before light \"Low\""));
+  EXPECT_THAT(render({"--light-samples", "16"}).err, HasSubstr("no visible point is in front of light \"Low\""));
 }
 
 /// Exposure ignores surfaces that emit light, translucent or not.

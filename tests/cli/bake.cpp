@@ -197,7 +197,7 @@ TEST_F(Bake, AnInstancedMeshIsBakedWhereItStands) {
       EXPECT_NEAR(first.floats.at(channel)[i], shared.floats.at(channel)[i], 2e-5) << channel << ' ' << i;
   }
   EXPECT_THAT(run({"bake", path("scene.json"), "--mesh", "floor", "--size", "16", "-o", path("map.exr")}).err,
-              HasSubstr("another triangle"));
+              HasSubstr("a further triangle"));
 
   // glTF nodes that share a mesh have separate names.
   test::Gltf gltf;
@@ -263,7 +263,7 @@ TEST_F(Bake, ATriangulatedSquareHasNoCracks) {
   write("scene.json", scene.dump());
   const Outcome outcome = run({"bake", path("scene.json"), "--mesh", "floor", "--size", "16", "-o", path("map.exr")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(outcome.err.find("another triangle"), std::string::npos) << outcome.err;
+  EXPECT_EQ(outcome.err.find("a further triangle"), std::string::npos) << outcome.err;
   EXPECT_THAT(outcome.err, HasSubstr("256 texels"));
   const ExrFile map = read_exr(path("map.exr"));
   for (std::size_t i = 0; i < 256; ++i) {

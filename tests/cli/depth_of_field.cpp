@@ -189,11 +189,11 @@ TEST_F(DepthOfField, WhatCannotBeMeantIsRefused) {
     return more;
   };
   refused({"--aperture", "0.1", "--focus-distance", "2"}, "blur needs --pixel-samples 4 or more");
-  refused(with_four({"--aperture", "0.1"}), "does not say at what distance it is sharp");
-  refused(with_four({"--focus-distance", "2"}), "of which lens?");
+  refused(with_four({"--aperture", "0.1"}), "has no focus distance");
+  refused(with_four({"--focus-distance", "2"}), "has no lens");
   refused(with_four({"--aperture", "-1"}), "expected a lens's radius");
   refused(with_four({"--aperture", "0.1", "--focus-distance", "0"}), "expected a distance above 0");
-  refused(with_four({"--aperture", "0", "--focus-distance", "1"}), "--aperture 0 is none");
+  refused(with_four({"--aperture", "0", "--focus-distance", "1"}), "there is no lens with --aperture 0");
   refused(with_four({"--aperture", "0.1", "--focus-distance", "2", "--bits", path("b.bits")}), "--bits");
   refused(with_four({"--aperture", "0.1", "--focus-distance", "2", "--method", "soft-volume"}),
           "has a lens with an aperture; methods that draw shadow volumes look from a point", 3);

@@ -89,8 +89,8 @@ TEST_F(ExactByDefault, OfAMethodThatWasNamedToo) {
   EXPECT_EQ(render({"--method", "edge-scatter"}).stats["lights"][0]["quantity"], "area");
   EXPECT_EQ(render({"--method", "edge-scatter", "--light-samples", "9"}).stats["lightSamples"], 9);
   const Rendered unused = render({"--method", "exact", "--light-samples", "9"});
-  EXPECT_THAT(unused.err, HasSubstr("--light-samples: exact gives areas, and takes no light samples"));
-  EXPECT_THAT(unused.stats["warnings"].dump(), HasSubstr("takes no light samples"));
+  EXPECT_THAT(unused.err, HasSubstr("--light-samples: exact computes areas, and uses no light samples"));
+  EXPECT_THAT(unused.stats["warnings"].dump(), HasSubstr("uses no light samples"));
   EXPECT_THAT(render({"--method", "exact"}).err, Not(HasSubstr("light samples")));
   for (const char* option : {"rows=samples", "engine=vulkan"}) {
     const Rendered samples = render({"--method", "edge-scatter", "--method-option", option});

@@ -190,7 +190,7 @@ TEST_F(Layers, HalfAndCompressionChangeColoursAlone) {
   write("scene.json", scene.dump());
   const Outcome bright = run({"render", path("scene.json"), "-o", path("out.exr"), "--half"});
   EXPECT_EQ(bright.code, 0);
-  EXPECT_THAT(bright.err, HasSubstr("beyond 65504"));
+  EXPECT_THAT(bright.err, HasSubstr("above 65504"));
 }
 
 /// Blender has room for 63 bytes of "layer.channel"; Nuke and Blender give channels without a layer names of their own.
@@ -243,7 +243,7 @@ TEST_F(Layers, ALightThatLightsNothingIsNamed) {
   write("scene.json", scene.dump());
   const Outcome outcome = run({"render", path("scene.json"), "-o", path("out.exr")});
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.err, HasSubstr("no visible point is before light \"fill\""));
+  EXPECT_THAT(outcome.err, HasSubstr("no visible point is in front of light \"fill\""));
   EXPECT_THAT(outcome.err, testing::Not(HasSubstr("\"key\"")));
 }
 

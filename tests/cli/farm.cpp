@@ -163,7 +163,7 @@ TEST_F(Farm, AScriptOfOddNamesIsRunAsItIs) {
 TEST_F(Farm, ADryRunRendersNothing) {
   const Outcome outcome = submit("dry", {"--dry-run"}, {{"PATH", "/nowhere"}});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("one frame a task"));
+  EXPECT_THAT(outcome.err, HasSubstr("each task has one frame"));
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("#SBATCH --array=0-5\n"), HasSubstr("--frames=0-0 --exposure=first"),
                                  HasSubstr("#SBATCH --exclusive\n")));
   EXPECT_TRUE(std::filesystem::is_empty(path("dry")));
@@ -200,7 +200,7 @@ TEST_F(Farm, WhatFailsInEveryRoundIsReported) {
   std::filesystem::create_directories(path("farm/s.0008.png"));
   const Outcome outcome = submit("farm", {"--sbatch", "partition=slow"}, environment);
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("frames a task")) << "the first frame was measured";
+  EXPECT_THAT(outcome.err, HasSubstr("frames per task")) << "the first frame was measured";
   EXPECT_THAT(read("bin/7.0.log"), HasSubstr("error: frame 8: "));
   const std::string own = read("farm/s.farm/frame-0008.log");
   EXPECT_EQ(count_of(own, "frame 8 on "), 4u) << "twice in each of two rounds: " << own;
@@ -235,7 +235,7 @@ TEST_F(Farm, WhatCannotBeMeantIsRefused) {
   EXPECT_THAT(nowhere.err, AllOf(HasSubstr("scontrol"), HasSubstr("--jobs N")));
   const Outcome missing = submit("none", {"--jobs", "2", "--exposure", path("no.exr")});
   EXPECT_EQ(missing.code, 3);
-  EXPECT_THAT(missing.err, HasSubstr("no such picture"));
+  EXPECT_THAT(missing.err, HasSubstr("picture does not exist"));
   EXPECT_TRUE(std::filesystem::is_empty(path("none")));
 }
 

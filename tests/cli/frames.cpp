@@ -149,7 +149,7 @@ TEST_F(Frames, ThatAreTornOrForeignAreMadeAgain) {
       write(name, text);
       const Outcome again = render(sequence);
       ASSERT_EQ(again.code, 0) << again.err;
-      EXPECT_THAT(again.err, HasSubstr(name + " is cut off, or no file that this command wrote")) << text.size();
+      EXPECT_THAT(again.err, HasSubstr(name + " is incomplete, or was not written by this command")) << text.size();
       if (name.ends_with(".json")) continue;  // it contains times
       EXPECT_EQ(read(name), bytes) << name << ", where " << text.size() << " bytes stood, and exposed as the first is";
     }
@@ -164,7 +164,7 @@ TEST_F(Frames, MayBeMoments) {
   EXPECT_EQ(image.attributes.at("penumbra.frame"), "5.5");
   const Outcome numbered = render({"--frame", "5.5", "-o", path("f.####.exr")});
   EXPECT_EQ(numbered.code, 2);
-  EXPECT_THAT(numbered.err, HasSubstr("lies between two frames"));
+  EXPECT_THAT(numbered.err, HasSubstr("is between two frames"));
   for (const char* wrong : {"x", "1e10", "nan", ""})
     EXPECT_EQ(render({"--frame", wrong, "-o", path("g.exr")}).code, 2) << wrong;
   EXPECT_THAT(files(), ElementsAre("f.exr", "scene.glb"));
@@ -186,15 +186,15 @@ TEST_F(Frames, OfComparisonsAreAtTheirTime) {
   const std::vector<std::pair<std::vector<std::string>, std::string>> refused = {
       {{"--pixel-samples", "4"}, "one view sample each"},
       {{"--motion-samples", "2"}, "at one moment"},
-      {{"--pixel-filter", "blackman-harris"}, "which no filter weighs"},
+      {{"--pixel-filter", "blackman-harris"}, "without weights of a filter"},
       {{"--max-rmse", "-1"}, "--max-rmse -1: expected a number of 0 or more, such as 0.01"},
       {{"--shutter", "1"}, "not over an open shutter"},
       {{"--aperture", "0.1"}, "through the lens's middle"},
       {{"--focus-distance", "2"}, "through the lens's middle"},
       {{"--frames", "1-2", "--sample-pixels", "5"}, "at the same pixels"},
-      {{"--instances", "shared"}, "which all of them can see; expected auto or copies"},
+      {{"--instances", "shared"}, "which all methods support; expected auto or copies"},
       {{"--light-cutoff", "0.01"}, "every light's V is compared"},
-      {{"--skip-existing"}, "nothing of an earlier one is kept"},
+      {{"--skip-existing"}, "earlier results are not kept"},
       {{"--camera", "all"}, "name one"},
       {{"--exposure", "bright"}, "stops from -100 to 100"},
       {{"--fps", "0"}, "a number above 0"}};

@@ -188,7 +188,7 @@ TEST_F(Inspect, WritesNoRepairThatIsNoMesh) {
   write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   write("huge.obj", "v 0 0 0\nv 1e30 0 0\nv 0 1e30 0\nf 1 2 3\n");
   for (const auto& [mesh, repaired, said] : {std::tuple("line.obj", "line.ply", "nothing is left of the mesh"),
-                                             {"huge.obj", "huge.glb", "no reader would take it"}}) {
+                                             {"huge.obj", "huge.glb", "reading it back fails"}}) {
     const Outcome outcome = run({"inspect", path(mesh), "--repair", path(repaired)});
     EXPECT_EQ(outcome.code, 3);
     EXPECT_THAT(outcome.err, HasSubstr(said));

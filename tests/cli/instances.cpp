@@ -210,7 +210,7 @@ TEST_F(Instances, GiveTheSamePictureInMotion) {
   const Outcome refused = run({"render", path("scene.glb"), "-o", path("out.exr"), "--instances", "shared", "--method",
                                "shadow-map", "--frame", "12", "--motion-samples", "3"});
   EXPECT_EQ(refused.code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("shadow-map takes one view sample a pixel"));
+  EXPECT_THAT(refused.err, HasSubstr("shadow-map supports one view sample per pixel with shared meshes"));
 }
 
 /// Pictures with a dome's light samples are the same, too; every direction needs a blocker. Areas need all triangles.

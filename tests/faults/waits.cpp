@@ -62,7 +62,7 @@ TEST_F(LongWaitFaults, CompareKeepsWhatCameBefore) {
   EXPECT_EQ(ending.code, 4) << ending.err;
   const std::string metrics = read("dir/metrics.json");
   EXPECT_THAT(metrics, HasSubstr("did not finish within 2 s"));
-  EXPECT_THAT(metrics, HasSubstr("not run, since the device does not answer any more"));
+  EXPECT_THAT(metrics, HasSubstr("not run, since the device no longer answers"));
   EXPECT_TRUE(std::filesystem::exists(path("dir") + "/shadow-map,size=64.exr"));
   EXPECT_TRUE(std::filesystem::exists(path("dir") + "/report.html"));
 }

@@ -99,7 +99,7 @@ byId("paste-camera").addEventListener("change", () => {
     change("camera", { type: "camera", camera });
     input.value = "";
   } catch (error) {
-    trouble(`That is no JSON: ${error.message}`);
+    trouble(`This is not JSON: ${error.message}`);
   }
 });
 connect();

@@ -117,8 +117,8 @@ function drawOutline(outline, pixel) {
   pen.strokeStyle = getComputedStyle(document.documentElement).color;
   pen.lineWidth = 1;
   pen.stroke();
-  const before = `${outline.blockers.length}${outline.whole ? "" : " and more"} triangles stand before it`, v = pixel.answers[0].V[outline.light];
-  byId("outline-facts").textContent = `${outline.light}: ${before}; edges that bound what is seen are red`;
+  const before = `${outline.blockers.length}${outline.whole ? "" : " and more"} triangles in front of it`, v = pixel.answers[0].V[outline.light];
+  byId("outline-facts").textContent = `${outline.light}: ${before}; edges that bound its visible part are red`;
   sheet.setAttribute("aria-label", `The outline of ${outline.light} as pixel ${pixel.x}, ${pixel.y} sees it: ${before}${v === undefined ? "" : `, V = ${v.toPrecision(6)}`}`);
   sheet.dataset.blockers = outline.blockers.length;
 }
