@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of comma-separated values, quoted as RFC 4180 has it.
+// Fields of comma-separated values, quoted as RFC 4180 requires.
 
 #include "base/csv.hpp"
 

@@ -98,7 +98,7 @@ void read_other_parts(Source& source, const Imath::Box2i& window, const std::str
   }
 }
 
-/// Reads from what OpenEXR opens: a file name or a stream, passed as `source`.
+/// Reads an image from `source`, a file name or a stream that OpenEXR opens.
 template <typename Source>
 ExrFile read_from(const std::string& shown, const ExrSelection& selection, Source&& source) {
   try {

@@ -62,8 +62,8 @@ std::uint64_t write_exr(const std::filesystem::path& path, const ExrImage& image
 /// Appends the image to `file`, which the caller commits.
 std::uint64_t write_exr(AtomicFile& file, const ExrImage& image);
 
-/// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers. Of a file with several
-/// parts, flat images that have the first part's data window are read; a channel name that occurs in several parts is
+/// An OpenEXR file in memory: FLOAT (and HALF) channels as floats, UINT channels as integers. If a file has several
+/// parts, the flat images with the first part's data window are read; a channel name that occurs in several parts is
 /// read from the first of them.
 struct ExrFile {
   std::uint32_t width = 0, height = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing of OpenEXR files, scan lines packed as OpenEXR's ZIP on all cores by libdeflate, which takes half of zlib's
-// time for as many bytes. (DWAA: exr_dwaa.cpp.)
+// Writes OpenEXR files. Scan lines are packed as OpenEXR's ZIP on all cores by libdeflate, which takes half of zlib's
+// time for the same size. (DWAA: exr_dwaa.cpp.)
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "base/exr.hpp"
@@ -32,7 +32,7 @@ std::size_t lines_of(ExrCompression compression) {
   return compression == ExrCompression::zip ? 16 : 1;
 }
 
-/// Packs lines as OpenEXR's ZIP does: bytes of even places before those of odd places, each as the difference from its
+/// Packs lines as OpenEXR's ZIP does: bytes at even places before those at odd places, each as the difference from its
 /// predecessor, then deflated. One packer for each thread.
 class Packer {
  public:
@@ -64,8 +64,8 @@ class Packer {
         std::memcpy(line_.data(), line_.data() + line_bytes, 2);
       }
     }
-    // The first byte is stored as it is; the first byte of an odd place follows the last of an even one, and so is a
-    // difference.
+    // The first byte is stored as it is. The first byte at an odd place follows the last one at an even place, so it is
+    // stored as a difference.
     split_[0] = static_cast<std::uint8_t>(split_[0] - 128);
     split_[bytes / 2] = difference(static_cast<std::uint8_t>(split_[bytes / 2] - 128), line_[0]);
 
@@ -79,7 +79,7 @@ class Packer {
     return plain(planes, width, first, count, again);
   }
 
-  /// Returns the lines of packed(), unpacked.
+  /// Returns the lines that packed() would pack, unpacked.
   std::vector<std::uint8_t> plain(std::span<const Plane> planes, std::size_t width, std::size_t first,
                                   std::size_t count) {
     return plain(planes, width, first, count, too_large_);
@@ -118,8 +118,7 @@ struct Block {
   std::vector<std::uint8_t> bytes;
 };
 
-/// Packs blocks of lines on all cores, and writes each block after all blocks before it. Returns the offset of each
-/// block.
+/// Packs blocks of lines on all cores, and writes the blocks in order. Returns the offset of each block.
 std::vector<std::uint64_t> write_lines(AtomicFile& file, std::span<const Plane> planes, const ExrImage& image,
                                        std::atomic<std::uint64_t>& too_large) {
   tbb::enumerable_thread_specific<Packer> packers([&] { return Packer(too_large); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear values to bytes of sRGB (IEC 61966-2-1) and back, computed in double.
+// Converts linear values to bytes of sRGB (IEC 61966-2-1) and back, in double.
 
 #include "base/image.hpp"
 

@@ -52,9 +52,9 @@ void jpeg_warned(j_common_ptr jpeg, int level) {
   if (level < 0 && jpeg->err->msg_code != JWRN_EXTRANEOUS_DATA) jpeg_failed(jpeg);
 }
 
-/// Returns the colour of four inks without a colour profile: each ink takes its share of one colour away, and black
-/// that of all three. Adobe's programs write how much of each ink is missing (libjpeg.txt, "Special color spaces"); a
-/// marker says that one of them wrote the file.
+/// Returns the colour of four inks without a colour profile: each ink removes its share of one colour, and black
+/// removes its share of all three. Adobe's programs store the missing amount of each ink (libjpeg.txt, "Special color
+/// spaces"); a marker shows that one of them wrote the file.
 std::array<std::uint8_t, 4> color_of_inks(const JSAMPLE* inks, bool adobe) {
   const auto left = [&](std::size_t ink) { return adobe ? unsigned{inks[ink]} : 255U - inks[ink]; };
   const auto part = [&](std::size_t ink) { return static_cast<std::uint8_t>((left(ink) * left(3) + 127) / 255); };

@@ -76,8 +76,8 @@ std::uint64_t room_of_group(const std::filesystem::path& folder, const GroupFile
   return *limit - std::min(*limit, used);
 }
 
-/// Returns the least that a group and its ancestors have left. In a container `path` may be the host's, which is not
-/// visible there: then only the mount's own root counts.
+/// Returns the least memory that a group and its ancestors have left. In a container `path` may be the host's, which is
+/// not visible there: then only the mount's own root counts.
 std::uint64_t room_of_groups(const std::filesystem::path& mount, std::string path, const GroupFiles& files) {
   std::uint64_t room = room_of_group(mount, files);
   while (path.size() > 1) {
@@ -88,15 +88,15 @@ std::uint64_t room_of_groups(const std::filesystem::path& mount, std::string pat
 }
 
 #ifdef __GLIBC__
-/// Arrays of at least so many bytes do not lie in the heap: they begin at large pages, and the gaps between such arrays
-/// would lie idle (half of the largest resident set of a picture in bands). kept_arrays() keeps them.
+/// Arrays of at least this many bytes do not lie in the heap: they begin at large pages, and in the heap the gaps
+/// between them would lie idle (half of the largest resident set of a picture in bands). kept_arrays() caches them.
 constexpr int kLeastOutsideHeap = KeptArrays::kLeast;
 std::atomic<bool> heap_lies_in_large_pages = false;
 
 /// Grows the C library's heap by a piece of address space, and asks the system for large pages there, so that a
 /// picture's small arrays do not cost a page fault for each 4 KiB. Memory is taken only where it is written. (glibc
-/// does this itself for a process that is started with GLIBC_TUNABLES=glibc.malloc.hugetlb=1.) Does nothing where
-/// addresses are scarce, since the piece counts.
+/// does this itself for a process that is started with GLIBC_TUNABLES=glibc.malloc.hugetlb=1.) Does nothing where the
+/// address space is limited, since the piece counts toward the limit.
 void lay_heap_in_large_pages() {
   constexpr int kPiece = 1 << 27;
   constexpr rlim_t kPlenty = rlim_t{16} * kPiece;
@@ -107,8 +107,8 @@ void lay_heap_in_large_pages() {
   if (is_scarce(RLIMIT_AS) || is_scarce(RLIMIT_DATA)) return;
   static char* const begin = static_cast<char*>(::sbrk(0));
   ::mallopt(M_TOP_PAD, kPiece);
-  // Larger than what the heap has free, and smaller than what does not lie in the heap. (volatile: the compiler keeps
-  // it.)
+  // Larger than the heap's free memory, and smaller than arrays outside of the heap. (volatile: the compiler keeps the
+  // allocation.)
   void* volatile more = std::malloc(kLeastOutsideHeap - (1 << 16));
   std::free(more);
   char* const end = static_cast<char*>(::sbrk(0));
@@ -192,7 +192,7 @@ void give_back_memory() {
   kept_arrays().free_all();
 #ifdef __GLIBC__
   ::malloc_trim(0);
-  if (heap_lies_in_large_pages) lay_heap_in_large_pages();  // trimming has taken away what had been laid out
+  if (heap_lies_in_large_pages) lay_heap_in_large_pages();  // trimming has released that piece of the heap
 #endif
 }
 

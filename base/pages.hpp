@@ -20,7 +20,7 @@ namespace penumbra {
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
 
 /// Arrays of at least this many bytes begin at a large page and lie in large pages where the system has some: pages.cpp
-/// replaces `operator new` for this purpose, so it holds for every list, of libraries too. (Not under address and
+/// replaces `operator new` for this purpose, so this holds for every list, also in libraries. (Not under address and
 /// thread sanitizer.)
 constexpr std::size_t kLargeArray = 2 * kLargePage;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Radiance pictures (G. Ward, "Real pixels", Graphics Gems II, 1991, and the Radiance file format): a header of lines,
-// an empty line, a line with the size, and scan lines whose four bytes a pixel may be run-length encoded in one of two
-// formats.
+// an empty line, a line with the size, and scan lines of four bytes a pixel, which may be run-length encoded in one of
+// two formats.
 #include "base/rgbe.hpp"
 
 #include "base/error.hpp"

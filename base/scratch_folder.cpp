@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hidden folder of its own below another, removed with its content at the end of its life.
+// A separate hidden folder below another one; the destructor removes it with its content.
 
 #include "base/scratch_folder.hpp"
 

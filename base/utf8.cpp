@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validates UTF-8 as RFC 3629 has it (no overlong forms, surrogates or code points beyond U+10FFFF), and writes bytes
-// that are none, and control characters, as escapes.
+// Validates UTF-8 as RFC 3629 defines it (no overlong forms, surrogates or code points beyond U+10FFFF), and writes
+// bytes that are not UTF-8, and control characters, as escapes.
 
 #include "base/utf8.hpp"
 

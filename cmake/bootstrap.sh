@@ -5,8 +5,8 @@
 say() { printf 'penumbra: %s\n' "$*" >&2; }
 die() { say "$1"; exit 4; }
 
-# lively TEXT COMMAND…: runs the command, and as long as it takes says every eight seconds what TEXT, a command too, prints. The
-# command stays in front, so that Ctrl-C ends it; the clock, and its sleep, hold none of its files.
+# lively TEXT COMMAND…: runs the command, and meanwhile says every eight seconds what the command TEXT prints. COMMAND
+# stays in the foreground, so that Ctrl-C ends it; the clock and its sleep keep none of its files open.
 lively() {
   local text=$1 clock code=0
   shift
@@ -27,7 +27,7 @@ apt_text() {
 }
 configure_text() { echo 'configuring build/ goes on'; }
 
-# never_silent TEXT: passes lines on, and says TEXT on stderr where none comes for eight seconds.
+# never_silent TEXT: passes lines on, and says TEXT on stderr whenever no line has come for eight seconds.
 never_silent() {
   local line code
   while true; do
@@ -43,14 +43,15 @@ never_silent() {
   done
 }
 
-# Installs what packages.txt lists and this machine does not have. Its first paragraph is what the program needs to be
-# built and run; `install_packages all` installs the second, too: what tests and developers need. `install_packages full`
-# also the third: what long tests alone need, and is large.
+# Installs the packages of packages.txt that this machine does not have. The first paragraph of that file is what the
+# program needs to be built and run. `install_packages all` also installs the second, which tests and developers need;
+# `install_packages full` also the third, which is large and which only long tests need.
 install_packages() {
   local missing=() package paragraphs=1
   case ${1-} in all) paragraphs=2 ;; full) paragraphs=3 ;; esac
-  # Ask for all packages at once: dpkg-query answers in milliseconds, apt would take seconds. Of the three letters of a
-  # status the second says what is (`i`: installed), the first what is wanted (`h`: held as it is), the third what is broken.
+  # Ask for all packages at once: dpkg-query answers in milliseconds, apt would take seconds. A status has three
+  # letters: the first is the wanted state (`h`: held as it is), the second the actual state (`i`: installed), the third
+  # an error.
   local installed
   installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' 2>/dev/null | sed -n 's/^.i  //p') ||
     die "cannot ask dpkg what is installed; this script is for Debian 12 and its kin"
@@ -116,7 +117,7 @@ build() {
       die "configuring failed (see above)"
     }
   fi
-  # Progress goes to stderr, so that stdout is the program's alone; a build with nothing to do says nothing.
+  # Progress goes to stderr, so that stdout has only the program's output; a build with nothing to do prints nothing.
   NINJA_STATUS='[%f/%t] ' ninja -C "$build" "$@" |
     sed -u -e '/^ninja: Entering directory/d' -e '/^ninja: no work to do/d' -e '/Re-checking globbed directories/d' |
     never_silent 'still compiling' >&2 || die "the build failed (see above)"

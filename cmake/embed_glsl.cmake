@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Turns a shader into text that an OpenGL driver compiles, and that into a header: caster.vert → kCasterVertText.
+# Turns a shader into text that an OpenGL driver compiles, and the text into a header: caster.vert → kCasterVertText.
 # cmake -DGLSLANG=… -DROOT=… -DSOURCE=… -DHEADER=… -DNAME=… -P embed_glsl.cmake; writes HEADER.d, too.
 execute_process(COMMAND ${GLSLANG} -E -DPENUMBRA_OPENGL -I${ROOT} ${SOURCE} OUTPUT_VARIABLE text ERROR_VARIABLE error RESULT_VARIABLE code)
 if(NOT code EQUAL 0)

@@ -4,7 +4,7 @@
 # includes.
 #   penumbra_precompile(target…)        the standard library, fmt, GLM, and nlohmann-json
 #   penumbra_precompile_tests(target)   these and GoogleTest
-# penumbra_seldom(target…) compiles code that runs once a command, and never long, with -O1: a third less of the
+# penumbra_seldom(target…) compiles code that runs once per command, and only briefly, with -O1: a third less of the
 # compiler's time.
 set(PENUMBRA_PRECOMPILED
   <algorithm> <array> <atomic> <bit> <charconv> <chrono> <cmath> <cstddef> <cstdint> <cstdio> <cstdlib> <cstring> <filesystem>
@@ -13,8 +13,8 @@ set(PENUMBRA_PRECOMPILED
   <fmt/format.h> <fmt/ranges.h> <glm/glm.hpp> <nlohmann/json.hpp>)
 
 # Without optimisation, fmt 9 requests optimisation of its own lines from g++ by pragma. In a precompiled header, g++ 12
-# does not end it: __OPTIMIZE__ stays defined, intrinsics are then functions in place of macros, and their immediates no
-# constants.
+# does not end that request: __OPTIMIZE__ stays defined, so that intrinsics are functions instead of macros, and their
+# immediates are not constants.
 add_compile_options("$<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Debug>>:-DFMT_GCC_PRAGMA(text)=>")
 
 find_package(fmt REQUIRED)
@@ -41,9 +41,10 @@ function(penumbra_seldom)
   endforeach()
 endfunction()
 
-# penumbra_join(target [APART file…]): the target's files are compiled as one, up to sixty (app's 58 files take 62 CPU s
-# in this form, 95 ten at a time). Except the files in APART (files that own a hidden type, or have an internal name
-# that another file also has), and files that Highway compiles once for each vector target.
+# penumbra_join(target [APART file…]): the target's files are compiled as one, up to sixty at a time (app's 58 files
+# take 62 CPU seconds in this form, and 95 ten at a time). Compiled separately are the files in APART (files that own a
+# hidden type, or have an internal name that another file also has), and files that Highway compiles once for each
+# vector target.
 function(penumbra_join target)
   cmake_parse_arguments(ARG "" "" "APART" ${ARGN})
   if(PENUMBRA_JOIN OR NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)

@@ -13,9 +13,9 @@ function(penumbra_shader_output source ending path output)
   set(${output} ${made} PARENT_SCOPE)
 endfunction()
 
-# penumbra_embedded(target header…): builds the target with these headers on its include path. They are a target of their
-# own: commands of `target` itself would wait for the libraries that it links, and objects of all that link it for these
-# commands.
+# penumbra_embedded(target header…): builds the target with these headers on its include path. They are a separate
+# target: commands of `target` itself would wait for the libraries that it links, and the objects of all targets that
+# link it would wait for these commands.
 function(penumbra_embedded target)
   get_property(count GLOBAL PROPERTY PENUMBRA_EMBEDDED)
   math(EXPR count "0${count} + 1")

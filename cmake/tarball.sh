@@ -20,7 +20,7 @@ cmake --install "$build" --component programs --strip --prefix "$stage" >"$work/
   { cat "$work/install.log" >&2; exit 1; }
 mkdir -p "$stage/lib/penumbra" "$stage/share/doc/penumbra"
 
-# The C library is the machine's: it belongs to the kernel, the loader and the drivers there.
+# The C library is not packed: it must match the kernel, the loader and the drivers of the machine.
 libraries=$(for program in "$build"/penumbra{,-import,-repair}; do
   if [[ -x $program ]]; then ldd "$program"; fi  # a build of `penumbra` alone has no penumbra-repair
 done | awk '$2 == "=>" && $3 ~ /^\// {print $3}' | sort -u | grep -vE '/(libc|libm|libpthread|libdl|librt|ld-linux-[^/]*)\.so')
@@ -28,7 +28,7 @@ done | awk '$2 == "=>" && $3 ~ /^\// {print $3}' | sort -u | grep -vE '/(libc|li
 libraries+=" $(ldconfig -p | awk '$1 == "libvulkan.so.1" {path = $NF} END {print path}')"
 for library in $libraries; do
   cp -L -- "$library" "$stage/lib/penumbra/"
-  # Each library's licence, as its package has it.
+  # Copies each library's licence from its package.
   package=$(dpkg-query -S "$(readlink -f -- "$library")" 2>/dev/null || dpkg-query -S "$library" 2>/dev/null || dpkg-query -S "/usr$(readlink -f -- "$library")")
   package=${package%%:*}
   cp -L -- "/usr/share/doc/$package/copyright" "$stage/share/doc/penumbra/$package.copyright"
@@ -38,7 +38,7 @@ cp -- "$root/LICENSE" "$stage/share/doc/penumbra/"
 cp -- "$root/bench/gpu.sh" "$stage/"
 git -C "$root" describe --always --dirty --abbrev=12 --exclude='*' >"$stage/share/doc/penumbra/commit" 2>/dev/null || true
 
-# The same bytes from the same tree: names in order, one time, nobody's.
+# The same tree gives the same bytes: sorted names, one time stamp, and no owner.
 tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@${SOURCE_DATE_EPOCH:-0}" -cJf "$folder/$name.tar.xz" "$name"
 printf '%s: %d MiB, unpacked %d MiB\n' "$folder/$name.tar.xz" $(($(stat -c %s "$folder/$name.tar.xz") >> 20)) \
   "$(du -sm "$stage" | cut -f1)"

@@ -171,7 +171,7 @@ class PackageReader {
     references_.push_back({from, {target, node.attribute("objectid").value()}, read_transform(xml, node)});
   }
 
-  /// Reads four rows of three numbers, for points as row vectors: exactly the columns of a glm matrix.
+  /// Reads four rows of three numbers, a matrix for row vectors: its rows are the columns of a glm matrix.
   static glm::dmat4 read_transform(const XmlText& xml, const pugi::xml_node& node) {
     glm::dmat4 matrix(1);
     const pugi::xml_attribute transform = node.attribute("transform");

@@ -90,7 +90,7 @@ class Assembly {
     const auto left = std::ranges::find_if(waiting, [](std::size_t count) { return count > 0; });
     auto part = static_cast<std::size_t>(left - waiting.begin());
     std::vector<bool> seen(parts_.size(), false);
-    while (!seen[part]) {  // walks down to a part of the cycle, not above it: the first that repeats
+    while (!seen[part]) {  // the part may be above a cycle: walks down until a part repeats, which is in the cycle
       seen[part] = true;
       const auto& children = parts_[part].children;
       part = std::ranges::find_if(children, [&](const PlacedPart& child) { return waiting[child.part] > 0; })->part;
@@ -144,7 +144,7 @@ class Assembly {
     std::size_t part = 0, number = 0;  ///< its origin in the file
   };
   std::vector<Wild> wild_;             ///< vertices with coordinates that are not finite
-  std::vector<bool> filled_, placed_;  ///< for each part: it or a part below it has faces; it is shown
+  std::vector<bool> filled_, placed_;  ///< for each part: whether it or a part below it has faces; whether it is placed
   std::uint64_t held_ = 0;             ///< faces of all parts, counted as often as the parts are placed
   std::uint64_t mirrored_ = 0;
 };

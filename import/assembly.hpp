@@ -26,8 +26,8 @@ struct AssemblyPart {
   std::vector<glm::dvec3> positions;
   std::vector<mesh::Triangle> triangles;  ///< into `positions`, in range
   std::vector<PlacedPart> children;
-  std::vector<std::uint32_t> corners = {};  ///< corners of faces with any number of corners, one face after the other,
-                                            ///< as `triangles`
+  std::vector<std::uint32_t> corners = {};  ///< indices into `positions`, for faces with any number of corners, one
+                                            ///< face after the other
   std::vector<std::size_t> face_ends = {};  ///< end of each face in `corners`
 };
 

@@ -12,7 +12,7 @@ struct aiScene;
 namespace penumbra::import {
 
 struct AssimpSceneOptions {
-  bool is_fbx = false;          ///< applies its unit and axes
+  bool is_fbx = false;          ///< applies the unit and axes of an FBX file
   std::uint64_t triangles = 0;  ///< least number of triangles, if counted: a file with fewer is rejected
   SceneParts* parts = nullptr;  ///< receives everything except triangles
 };

@@ -48,7 +48,7 @@ class Counter {
           triangles += triangles_of(target_of(child, "url"));
       }
     }
-    return visits < kMostVisits ? triangles : 0;  // 0 for endless repetition, which runs into the limit of memory
+    return visits < kMostVisits ? triangles : 0;  // 0 for endless repetition: reading then exceeds the memory limit
   }
 
  private:

@@ -27,7 +27,7 @@ class FaceCollector {
   /// Returns the number of triangles that the added faces consist of.
   [[nodiscard]] std::uint64_t triangles() const { return due_; }
   /// Throws InputError if the number of faces added is not `held`, the number in the file, or if a face gave fewer
-  /// triangles than it consists of: so a reader never loses faces silently.
+  /// triangles than it consists of, so that a reader never loses faces silently.
   void require_all(std::uint64_t held, const std::string& file) const;
 
   /// Counts elements that the file lists apart from its faces; these get no number.
@@ -36,7 +36,8 @@ class FaceCollector {
 
   /// Returns one note for each kind of change.
   [[nodiscard]] std::vector<std::string> notes() const;
-  /// Describes the file's content other than surfaces ("12 points, 3 lines"), for the message that there are none.
+  /// Describes the file's content other than surfaces ("12 points, 3 lines"), for the message that the file has no
+  /// surfaces.
   [[nodiscard]] std::string instead_of_surfaces() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes of FBX and COLLADA files: lamps, cameras and colours that Assimp found, as the program's own. Blender's
+// Converts the lamps, cameras and colours that Assimp found in FBX and COLLADA files to the program's own. Blender's
 // exporters write the power of a lamp in watts where others write candela.
 
 #include "import/foreign_scene.hpp"
@@ -65,8 +65,8 @@ class ForeignScene {
           lamps_, options_.lamp_radius.value_or(scenes::kLampRadius), options_.sun_angle.value_or(scenes::kSunAngle),
           from_blender_ ? "in Blender" : "if their intensities were candela and lux"));
     }
-    // A file without a light gets a studio, which shows its shapes: losses are named, and no picture of its own is
-    // wrong.
+    // A file without a light gets a studio, which shows only its shapes. Losses are then reported and not refused,
+    // because the file has no lighting of its own that they could make wrong.
     if (!options_.lenient && options_.needs_light && !scene_.lights.empty()) losses_.throw_refused();
     losses_.warn(scene_.warnings);
     return std::move(scene_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// penumbra-import: reads one foreign file in a process of its own. Not for users: penumbra starts it, passes the file
-// and the limits, and reads the answer from its standard output (see mesh/import_helper.hpp).
+// penumbra-import: reads one foreign file in a separate process. Not for users: penumbra starts it, passes the file and
+// the limits, and reads the answer from its standard output (see mesh/import_helper.hpp).
 
 #include "base/error.hpp"
 #include "base/memory.hpp"
@@ -32,8 +32,8 @@
 #include <vector>
 
 #if defined(PENUMBRA_SHADOW_MEMORY)
-// Sanitizers reserve terabytes of addresses, so that the limit must be on resident memory instead. The leaks are
-// Assimp's (on eleven of its own test files), and end with this process.
+// Sanitizers reserve terabytes of addresses, so the limit must be on resident memory instead. Leaks are not reported:
+// they are Assimp's (on eleven of its own test files), and end with this process.
 extern "C" const char* __asan_default_options();
 extern "C" const char* __asan_default_options() {
   return "detect_leaks=0:hard_rss_limit_mb=4096";
@@ -51,10 +51,11 @@ struct Arguments {
   scenes::ReadOptions options;
   std::optional<double> uv;
   bool instances = false;
-  std::vector<double> further;  ///< times at which the scene is wanted, too
+  std::vector<double> further;  ///< further times at which the scene is wanted
 };
 
-/// Scenes at further times are added to an answer of fewer bytes, and in this part of the time that reading may take.
+/// Scenes at further times are added while the answer has fewer than kAheadBytes bytes, and until 1 / kAheadPart of the
+/// time that reading may take is spent.
 constexpr std::uint64_t kAheadBytes = std::uint64_t{256} << 20U, kAheadPart = 4;
 
 bool parse(std::string_view text, std::uint64_t& value) {
@@ -126,7 +127,7 @@ mesh::ImportedMesh read_mesh(const mesh::InputFile& input, const Arguments& argu
   return import::read_mesh(input, arguments.uv.has_value());
 }
 
-/// Answers with the scene, then the number of scenes at further times, and these.
+/// Answers with the scene, then the number of scenes at further times, then those scenes.
 void put_scenes(Answer& answer, const mesh::InputFile& input, const Arguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   scenes::ReadOptions options = arguments.options;

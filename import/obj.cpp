@@ -151,8 +151,8 @@ class ObjReader {
     places_.push_back(is_place ? glm::dvec2(*u, *v) : mesh::kNoPlace);
   }
 
-  /// Returns the index, from 0, of the texture coordinates that a corner names after its first slash; or a number for
-  /// none.
+  /// Returns the index, from 0, of the texture coordinates that a corner names after its first slash; kPlaceless if it
+  /// names none.
   [[nodiscard]] std::int64_t place_of_corner(std::string_view word) const {
     const std::size_t slash = word.find('/');
     if (slash == std::string_view::npos) return kPlaceless;
@@ -288,7 +288,7 @@ class ObjReader {
   std::uint64_t highest_named_ = 0;  ///< largest vertex number, from 1, that a face names before the vertex exists; 0
                                      ///< if there is none
   std::uint64_t normals_ = 0, uvs_ = 0, colors_ = 0, free_form_ = 0, unknown_ = 0;
-  std::uint64_t longer_ = 0, weightless_ = 0;  ///< vertices with numbers of unknown meaning, and of weight 0
+  std::uint64_t longer_ = 0, weightless_ = 0;  ///< counts of vertices: with numbers of unknown meaning; with weight 0
   std::pair<std::uint64_t, std::size_t> first_weightless_;  ///< vertex number from 1, and line
   std::string first_unknown_;
 };

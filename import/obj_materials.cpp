@@ -37,8 +37,8 @@ void for_each_statement(std::string_view text, const Take& take) {
   }
 }
 
-/// Returns the content of a file in the folder or below; empty if it is none, is larger than any material library, or
-/// cannot be read: the mesh does not need it.
+/// Returns the content of a file in the folder or below. Empty if there is no such file, or if it is larger than any
+/// material library or cannot be read: the mesh does not need it.
 std::string content_of(const mesh::InputFile& input, std::string_view name) {
   constexpr off_t kMostBytes = 64 << 20;
   const mesh::OpenedBeneath file =

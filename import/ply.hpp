@@ -16,8 +16,8 @@ namespace penumbra::import {
 /// number.
 mesh::ImportedMesh read_ply(std::string_view content, const std::string& file);
 
-/// Reads as read_ply does, a binary body number by number for every layout: the reference against which read_ply, which
-/// takes usual layouts in bulk, is tested.
+/// Gives the same result as read_ply, but reads every binary body number by number: a reference for tests of read_ply,
+/// which reads usual layouts in bulk.
 mesh::ImportedMesh read_ply_slowly(std::string_view content, const std::string& file);
 
 }  // namespace penumbra::import

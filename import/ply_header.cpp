@@ -131,8 +131,7 @@ class HeaderReader {
         const std::size_t binary = size_of(property.is_list ? property.length_type : property.type);
         bytes += header_.format == PlyFormat::ascii ? 2 : binary;
       }
-      bytes = std::max<std::uint64_t>(bytes, 1);  // elements of zero bytes are counted as one byte: a billion empty
-                                                  // elements are not meant
+      bytes = std::max<std::uint64_t>(bytes, 1);  // empty elements count as one byte: a billion cannot be intended
       if (element.count > left / bytes) {
         throw InputError(
             "{}: PLY header: it promises {} elements '{}' of {} bytes or more, but only {} bytes follow; the file is "

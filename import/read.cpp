@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a mesh file by its format: with readers of this folder for common formats, whose messages have lines and whose
-// faces are all kept, with Assimp for the others. The name's ending decides; if reading fails, the first bytes tell
-// whether the ending is wrong.
+// Reads a mesh file by its format: common formats with this folder's own readers, which give lines in messages and keep
+// all faces; the others with Assimp. The name's ending decides; if reading fails, the first bytes tell whether the
+// ending is wrong.
 
 #include "import/read.hpp"
 
@@ -130,7 +130,7 @@ std::optional<std::string_view> sniff(std::string_view content) {
   return std::nullopt;
 }
 
-/// Assimp reports exhausted memory by the text of the standard library's exceptions.
+/// Throws std::bad_alloc if the message reports exhausted memory: Assimp passes on only the text of such exceptions.
 void rethrow_out_of_memory(std::string_view message) {
   for (const std::string_view sign : {"std::bad_alloc", "bad_array_new_length", "vector::", "basic_string::"}) {
     if (message.find(sign) != std::string_view::npos) throw std::bad_alloc();

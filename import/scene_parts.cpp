@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects lamps, cameras and colours of a file that Assimp read. Whether a camera is orthographic is not among what is
-// read here: the file's own bytes are searched for it.
+// Collects lamps, cameras and colours of a file that Assimp read. Assimp does not tell whether a camera is
+// orthographic, so the file's own bytes are searched for that.
 
 #include "import/scene_parts.hpp"
 

@@ -21,7 +21,7 @@ struct SceneParts {
   /// Mesh placed by a node.
   struct Part {
     std::string name;
-    std::size_t first_triangle = 0;  ///< first triangle; up to the next part's
+    std::size_t first_triangle = 0;  ///< first triangle; the part ends at the next part's
     std::string material;
     glm::dvec3 color{0.8}, emission{0};
     double opacity = 1;
@@ -64,8 +64,8 @@ void add_lamps_and_lenses(const aiScene& scene, const std::map<std::string, glm:
 /// Returns whether a file has an orthographic camera.
 bool has_orthographic_camera(std::string_view content);
 
-/// Returns whether a binary FBX file has default properties of lamps. Blender writes a camera's properties there, with
-/// which white lamps are grey.
+/// Returns whether a binary FBX file has default properties of lamps. Blender writes a camera's properties there, which
+/// makes white lamps grey.
 bool has_template_of_lamps(std::string_view content);
 
 }  // namespace penumbra::import

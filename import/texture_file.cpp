@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of lights (PNG, OpenEXR) and of skies (Radiance, too), told apart by their first bytes, with limits on the
-// file's length and the picture's side before decoding.
+// Reads pictures of lights (PNG, OpenEXR) and of skies (also Radiance). The first bytes tell the format; the file's
+// length and the picture's side are limited before decoding.
 
 #include "import/texture_file.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text in UTF-16 or UTF-32 as UTF-8: the byte order mark names the encoding, and surrogates that are not a pair are
-// refused.
+// Converts text in UTF-16 or UTF-32 to UTF-8. The byte order mark names the encoding; surrogates that are not a pair
+// are refused.
 
 #include "import/unicode.hpp"
 
@@ -16,7 +16,7 @@
 namespace penumbra::import {
 namespace {
 
-/// Extensions of formats that are text, or are text unless they begin with something else than a byte order mark.
+/// Extensions of formats that are always text, or that are text if they begin with a byte order mark.
 constexpr std::array<std::string_view, 33> kTextFormats = {
     ".obj", ".off", ".stl", ".ply", ".amf", ".ac",   ".acc",     ".ac3d",    ".ase",  ".ask", ".dae",
     ".x",   ".x3d", ".wrl", ".xgl", ".nff", ".enff", ".lws",     ".irr",     ".dxf",  ".raw", ".irrmesh",

@@ -142,8 +142,8 @@ class X3dReader {
     while (node && node != top && !node.next_sibling()) node = node.parent();
     return node == top ? pugi::xml_node() : node.next_sibling();
   }
-  /// Returns the node that a node refers to by USE; itself if it has no USE, and the node itself if its kind shows no
-  /// surfaces.
+  /// Returns the node that `node` refers to by USE; `node` itself if it has no USE, or if its USE is undefined and its
+  /// kind shows no surfaces.
   [[nodiscard]] pugi::xml_node meant(const pugi::xml_node& node) const {
     const std::string_view name = local_name(node);
     const bool may_show =
@@ -224,7 +224,7 @@ class X3dReader {
     if (is_one_of(name, kLamps)) return note_lamp(node);
     ++ignored_[std::string(name)];
   }
-  /// Keeps the name of a lamp that shines, or what kind of lamp it is if it has no name.
+  /// Keeps the name of a lamp that is switched on, or the kind of lamp if it has no name.
   void note_lamp(const pugi::xml_node& node) {
     if (!meant(node).attribute("on").as_bool(true)) return;
     const std::string_view name = meant(node).attribute("DEF").value();
@@ -253,7 +253,8 @@ class X3dReader {
     return std::string_view(node.attribute("containerField").value()) == "appearance";
   }
 
-  /// Keeps the name of a material that lets light through. A USE of none is no fault: no surface needs it.
+  /// Keeps the name of a material that lets light through. A USE that refers to no node is no error here: no surface
+  /// needs it.
   void note_transparency(const pugi::xml_node& appearance) {
     for (const pugi::xml_node& child : meant(appearance).children()) {
       if (local_name(child) != "Material" && local_name(child) != "PhysicalMaterial") continue;
@@ -336,7 +337,7 @@ class X3dReader {
   std::uint64_t shapes_ = 0, reached_ = 0, left_out_ = 0, curved_ = 0;
   Counts lines_, ignored_;
   std::set<std::string> transparent_;  // names of materials that let light through
-  std::vector<std::string> lamps_;     // that the file has, and that are left out
+  std::vector<std::string> lamps_;     // names of the file's lamps, which are left out
 };
 
 }  // namespace

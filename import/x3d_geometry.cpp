@@ -175,7 +175,8 @@ class Geometry {
     join(outline, circle(inner));
   }
 
-  /// ISO/IEC 19775-1, 13.3.5: the cross-section, scaled and rotated, in a plane across the spine at each of its points.
+  /// Adds an extrusion (ISO/IEC 19775-1, 13.3.5): the cross-section, scaled and rotated, in a plane across the spine at
+  /// each of the spine's points.
   void extrusion() {
     const std::vector<double> section = x3d_reals(xml_, node_, "crossSection"),
                               scales = x3d_reals(xml_, node_, "scale"), turns = x3d_reals(xml_, node_, "orientation"),
@@ -255,7 +256,7 @@ class Geometry {
     }
     part_.face_ends.push_back(part_.corners.size());
   }
-  /// Calls add_run for each run of indices between −1 and −1.
+  /// Calls add_run for each run of indices between two entries of −1.
   template <typename Add>
   static void add_runs(const std::vector<std::int32_t>& order, const Add& add_run) {
     for (std::size_t begin = 0; begin < order.size();) {

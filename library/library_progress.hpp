@@ -21,7 +21,7 @@ class LibraryProgress final : public session::Progress {
   void clear() override {}
   void say(Level level, const std::string& message) override;
   /// Rethrows the exception thrown by a function of the calling program, and throws Cancelled if that function ended
-  /// the call: also where an exception was caught in between.
+  /// the call, even if other code caught the exception in between.
   void rethrow();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts shapes of lights between the interface and the rooms.
+// Converts shapes of lights between the public interface and scenes/.
 
 #include "library/light_shape.hpp"
 

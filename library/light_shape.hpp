@@ -9,7 +9,7 @@
 
 #include <optional>
 
-/// Conversions between the interface's vectors and shapes of lights and those of the rooms.
+/// Conversions between the public interface's vectors and shapes of lights and those of scenes/.
 namespace penumbra {
 
 inline glm::dvec3 to_glm(const Vector& v) {
@@ -19,7 +19,7 @@ inline Vector from_glm(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Returns the room's shape. Throws InputError for a direction of length 0.
+/// Returns the shape in the form of scenes/. Throws InputError for a direction of length 0.
 scenes::LightShape to_scene(const LightShape& shape);
 /// Returns the interface's shape; nullopt for a light in pieces, for which the interface has no shape.
 std::optional<LightShape> from_scene(const scenes::LightShape& shape);

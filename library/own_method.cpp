@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds methods of the calling program to those of this program: each is a row of the table of methods whose method
-// calls the calling program's.
+// Adds methods of the calling program to the table of methods: each becomes a row, whose method calls that of the
+// calling program.
 
 #include "base/assert.hpp"
 #include "base/did_you_mean.hpp"

@@ -37,8 +37,8 @@ namespace {
 constexpr float kFar = 1e10F;  // Z of the background
 
 /// Returns the number of rows that methods evaluate between two calls of the progress function: some tenths of a second
-/// of work. All rows without such a function, and of pictures with several view samples a pixel, which have bands of
-/// their own (FrameRenderer::mean_bands).
+/// of work. All rows if there is no such function, and for pictures with several view samples a pixel, which have
+/// separate bands (FrameRenderer::mean_bands).
 std::uint32_t band_rows(const RendererOptions& renderer, const scenes::Scene& scene, const RenderOptions& options) {
   constexpr std::uint32_t kSamples = 1U << 16U;
   if (!renderer.progress || options.pixel_samples > 1) return std::numeric_limits<std::uint32_t>::max();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scene of the interface: reading, writing, lights and cameras, with the checks of a file for each change.
+// Scene of the public interface: reading, writing, lights and cameras. Each change is checked as a file's content is.
 
 #include "base/error.hpp"
 #include "library/as_error.hpp"
@@ -254,7 +254,7 @@ void Scene::set_camera(const Camera& camera) {
   if (place == cameras.end()) place = cameras.insert(cameras.end(), made);
   const scenes::Camera before = *place;
   *place = made;
-  // The interface's Camera has neither: a camera that was read and is moved keeps both.
+  // The public Camera has neither aspect nor shift: a camera that was read from a file keeps both when it is moved.
   place->aspect = before.aspect;
   place->shift = before.shift;
   state_->camera = static_cast<std::size_t>(place - cameras.begin());

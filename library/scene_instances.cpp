@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances of the interface's scene: meshes that it has several times, stored once. A call that throws changes
+// Instances in the public interface's scene: meshes that appear several times, stored once. A call that throws changes
 // nothing.
 
 #include "library/as_error.hpp"
@@ -40,7 +40,7 @@ void require_near(const ObjectBox& box, const scenes::Placement& placement, cons
   }
 }
 
-/// Returns where something is that is placed first by `inner`, then by `outer`.
+/// Returns the placement that applies `inner` first, then `outer`.
 scenes::Placement placed_by(const scenes::Placement& outer, const scenes::Placement& inner) {
   return {outer.to_world * inner.to_world, true};
 }
@@ -49,7 +49,7 @@ std::size_t first_of(const Scene::State& state, std::span<const scenes::Instance
   return static_cast<std::size_t>(instances.data() - state.instances.all.data());
 }
 
-/// Moves all instances of an object back to where each was put.
+/// Moves all instances of an object back to their individual placements (State::placed).
 void move_back(Scene::State& state, std::uint32_t object) {
   state.moved.erase(object);
   const std::span<const scenes::Instance> instances = instances_of(state, object);
@@ -57,7 +57,7 @@ void move_back(Scene::State& state, std::uint32_t object) {
   for (std::size_t i = first; i < first + instances.size(); ++i) state.instances.all[i].placement = state.placed[i];
 }
 
-/// Keeps the origin from the first move on.
+/// Called before instances move: the scene keeps the origin that it has before the first move.
 void begin_moving(Scene::State& state) {
   if (!state.scene.origin) state.scene.origin = origin_at_rest(state);
   state.instances_moved = true;
@@ -77,7 +77,7 @@ scenes::SharedMesh shared_mesh_of(const scenes::Scene& scene, std::uint32_t obje
   return mesh;
 }
 
-/// Replaces the mesh of an object's instances, which has no other ones.
+/// Replaces the mesh of an object's instances; no other object may have instances of that mesh.
 void set_shared_mesh(Scene::State& state, std::uint32_t object, scenes::SharedMesh mesh, const std::string& where) {
   const std::span<const scenes::Instance> instances = instances_of(state, object);
   const ObjectBox box = box_of(mesh.soup);
@@ -159,7 +159,7 @@ std::unique_ptr<Scene::State> with_copies_of(const Scene::State& state, std::uin
     own.all.push_back(instance);
     own.all.back().soup_before = 0;
   }
-  // The changed scene has them a second time; a triangle has up to three positions of its own.
+  // The changed scene holds the copies a second time; a triangle has up to three positions that it does not share.
   const scenes::Scene copies = scenes::copied({}, own, mesh::soup_bytes(1, 3));
   auto changed = with_object(state, object, [&](scenes::Scene& to) { copy_object(copies, object, to); });
   drop_instances(*changed, object);

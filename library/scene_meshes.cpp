@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes of the interface's scene: adding, replacing, moving. A call that throws changes nothing.
+// Meshes of the public interface's scene: adding, replacing, moving. A call that throws changes nothing.
 
 #include "library/as_error.hpp"
 #include "library/light_shape.hpp"

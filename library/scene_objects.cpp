@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Objects of the interface's scene, their vertices, and its origin, for all functions that change them.
+// Objects of the public interface's scene, their vertices, and the scene's origin, for all functions that change them.
 
 #include "library/scene_objects.hpp"
 

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-/// Functions for changing meshes and instances of a scene. Objects' triangles stand in the soup in the order of the
+/// Functions for changing meshes and instances of a scene. Objects' triangles are in the soup in the order of the
 /// objects.
 namespace penumbra {
 
@@ -48,8 +48,7 @@ void copy_object(const scenes::Scene& from, std::uint32_t object, scenes::Scene&
 /// or whose last row is not 0 0 0 1.
 scenes::Placement placement_of(const Matrix& matrix, const std::string& where);
 
-/// Returns the origin to which the scene's meshes belong: the centre of the box around all of them, which were not
-/// moved yet.
+/// Returns the scene's origin before any mesh was moved: the centre of the box around all meshes.
 glm::dvec3 origin_at_rest(const Scene::State& state);
 /// Returns the file's origin, if given. Otherwise, once meshes have moved, the scene's origin stays at its position at
 /// rest; before, it follows from the vertices. A scene with instances keeps the origin that it had when the first of
@@ -65,10 +64,11 @@ inline std::span<const scenes::Instance> instances_of(const Scene::State& state,
 /// Prepares a scene that was read for changes of its instances.
 void adopt_instances(Scene::State& state);
 void drop_instances(Scene::State& state, std::uint32_t object);
-/// Counts again the soup's triangles before each instance.
+/// Recounts the soup's triangles before each instance.
 void number_instances(Scene::State& state);
 
-/// Returns the state in which `fill` has added the triangles of an object to the scene. All others are as they were.
+/// Returns the state in which `fill` has added the triangles of an object to the scene. All other objects stay as they
+/// were.
 template <typename Fill>
 std::unique_ptr<Scene::State> with_object(const Scene::State& state, std::uint32_t object, const Fill& fill) {
   const scenes::Scene& old = state.scene;
@@ -92,7 +92,8 @@ std::unique_ptr<Scene::State> with_object(const Scene::State& state, std::uint32
   return changed;
 }
 
-/// Changes of a mesh with instances, in its own space: what Scene's functions of these names promise.
+/// Change a mesh with instances, in the mesh's own space, as Scene::set_mesh(), set_positions() and set_transform()
+/// promise.
 std::unique_ptr<Scene::State> with_shared_mesh(const Scene::State& state, std::uint32_t object, GivenMesh given,
                                                const std::string& where);
 void set_shared_positions(Scene::State& state, std::uint32_t object, std::span<const Vector> positions,

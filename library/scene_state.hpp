@@ -17,7 +17,7 @@ namespace penumbra {
 
 /// Mesh as added or read: the positions to which set_transform() applies its matrix.
 struct RestMesh {
-  std::uint32_t first = 0;  ///< of its vertices among the scene's, which are consecutive
+  std::uint32_t first = 0;  ///< index of its first vertex among the scene's; its vertices are consecutive
   std::vector<glm::dvec3> positions;
   std::vector<glm::vec3> normals;  ///< empty: the scene has none
 };
@@ -50,7 +50,7 @@ struct Scene::State {
   std::vector<std::optional<RestMesh>> rest = {};
   /// Vertices given for the first objects, one entry each; objects without an entry keep all their vertices.
   std::vector<GivenVertices> given = {};
-  /// The origin given by the file, as of scenes that move: unchanged when meshes are added.
+  /// The origin given by the file, which scenes that move have: it stays unchanged when meshes are added.
   std::optional<glm::dvec3> file_origin = {};
   /// Differs between any two scenes of the process whose triangles, pictures or vertices' looks differ.
   std::uint64_t meshes = next_meshes();

@@ -43,7 +43,7 @@ class BoxTree {
   template <typename Enters, typename Reaches, typename Visit>
   void find(const Enters& enters, const Reaches& reaches, const Visit& visit) const {
     if (order_.empty()) return;
-    std::array<std::uint32_t, 64> stack;  // heap indices, from 1; at most one node a level is waiting
+    std::array<std::uint32_t, 64> stack;  // heap indices, from 1; at most one waiting node per level
     std::size_t waiting = 0;
     stack[waiting++] = 1;
     while (waiting > 0) {

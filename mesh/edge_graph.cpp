@@ -19,8 +19,9 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Joins vertices within `weld` of each other, and chains of them; the root is the first of each chain. Sweeps along x,
-/// so the cost is n · (vertices within `weld` along x): meant for tolerances far below the spacing of vertices.
+/// Joins vertices within `weld` of each other, and chains of such vertices; the root is the first of each chain. Sweeps
+/// along x, so the cost is n · (vertices within `weld` along x): meant for tolerances far below the spacing of
+/// vertices.
 void join_close(std::span<const glm::dvec3> positions, double weld, std::vector<std::uint32_t>& vertex) {
   std::vector<std::uint32_t> order;
   for (std::uint32_t i = 0; i < vertex.size(); ++i) {

@@ -66,11 +66,11 @@ struct EdgeGraph {
 };
 
 /// Builds the edge graph. `weld` > 0 (in the scene's unit) also merges positions at most that far apart, and chains of
-/// them; the vertex lies where the first of them does. In parallel, in time and memory linear in the soup (with `weld`:
-/// O(n log n)).
+/// such positions; the vertex lies where the first of them does. In parallel, in time and memory linear in the soup
+/// (with `weld`: O(n log n)).
 EdgeGraph build_edge_graph(const MeshView& mesh, double weld = 0);
 
-/// Returns float coordinates converted to double, which build_edge_graph takes, for float meshes (SceneFloats).
+/// Returns float coordinates converted to double, so that build_edge_graph can take float meshes (SceneFloats).
 std::vector<glm::dvec3> widened(std::span<const glm::vec3> positions);
 
 }  // namespace penumbra::mesh

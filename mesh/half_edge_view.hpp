@@ -76,10 +76,10 @@ class HalfEdgeView {
 
   /// Returns the loops around the faces that a point p sees from the given side; `facings` is mesh::facings(…, p) of
   /// the whole soup. Tie rule: a face seen edge-on belongs to neither side, so in the loops around the front faces it
-  /// counts as back. Over the held faces, k_e(p) is exactly the number of front loops that run through the edge from a
-  /// to b less those from b to a, less the same difference of the back loops, with or without ties. In a closed
-  /// component without a tie, the front loops alone are the silhouette. Every loop is closed, also in open components,
-  /// since the boundary counts as the end of either side.
+  /// counts as back. Over the held faces, k_e(p) of silhouettes.hpp is exactly the number of front loops that run
+  /// through the edge from a to b less those from b to a, less the same difference of the back loops, with or without
+  /// ties. In a closed component without a tie, the front loops alone are the silhouette. Every loop is closed, also in
+  /// open components, since the boundary counts as the end of either side.
   [[nodiscard]] std::vector<SurfaceLoop> silhouette_loops(std::span<const Side> facings, Side side = Side::front) const;
 
  private:

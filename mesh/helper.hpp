@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// Programs of this project that do one piece of work in a process of their own: `penumbra-import` reads foreign files,
+/// Programs of this project that do one piece of work in a separate process: `penumbra-import` reads foreign files,
 /// `penumbra-repair` repairs meshes. helper_process.hpp is the helper's side.
 namespace penumbra::mesh {
 
@@ -63,12 +63,12 @@ class GrowingBytes {
 
 /// One call of a helper.
 struct HelperRun {
-  std::vector<std::string> arguments;  ///< one of them is this process's number: the helper ends with this process
+  std::vector<std::string> arguments;  ///< one must be this process's number: the helper ends with this process
   std::vector<int> files;              ///< open files of this process, which become the helper's kFirstHelperFile and
                                        ///< so on
   std::optional<std::chrono::milliseconds> time = {};
   std::uint64_t output_bytes = ~std::uint64_t{0};
-  /// Called ten times a second while the helper works; its exception ends the helper. Null: none.
+  /// Called ten times a second while the helper works; its exception ends the helper. May be null.
   const std::function<void()>* step = nullptr;
 };
 inline constexpr int kFirstHelperFile = 3;

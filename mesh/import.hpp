@@ -34,16 +34,16 @@ struct ImportLimits {
   const std::function<void()>* step = nullptr;  ///< HelperRun::step
 };
 
-/// Reads OBJ, PLY, OFF, STL, AMF and 3MF with readers of this project, glTF/GLB with that of scenes, and 3DS and other
-/// formats with Assimp.
+/// Reads OBJ, PLY, OFF, STL, AMF and 3MF with readers of this project, glTF/GLB with the reader of scenes, and 3DS and
+/// other formats with Assimp.
 ///
 /// The soup keeps all faces: duplicates and degenerate triangles stay. Polygons become triangles (a fan if convex, ear
 /// clipping otherwise); lines, points and faces with fewer than three corners are skipped and counted in `notes`, as is
 /// everything else that is not geometry.
 ///
 /// The file is parsed in a child process (`penumbra-import`) under `limits`: a file that crashes the parser, hangs it
-/// or exhausts its memory gives an InputError with that reason. InputError also for: no such file, no triangles, an
-/// index out of range, a vertex that is not finite, a file shorter than its header promises.
+/// or exhausts its memory gives an InputError with that reason. Also throws InputError for a missing file, no
+/// triangles, an index out of range, a vertex that is not finite, and a file shorter than its header promises.
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportLimits& limits = {});
 
 /// Options for glTF files.

@@ -14,7 +14,7 @@
 namespace penumbra::mesh {
 
 /// Arguments of the helper: `penumbra-import KIND MILLISECONDS BYTES ASKER FILE FLAGS…`. FILE is only a name: the
-/// helper gets the file and its folder opened, as the descriptors below.
+/// helper receives the file and its folder as the open descriptors below.
 struct HelperJob {
   std::string kind;  ///< "mesh", "scene", "texture" or "sky"
   const InputFile& input;
@@ -31,7 +31,7 @@ struct HelperAnswer {
   std::span<const std::byte> payload() const&& = delete;
 };
 
-/// Runs `penumbra-import` on a foreign file, in a process of its own, and returns its answer.
+/// Runs `penumbra-import` on a foreign file, in a separate process, and returns its answer.
 ///
 /// Throws InputError if the file is bad, or if reading it crashed, hung or exceeded `limits`; ResourceError if the
 /// helper is missing or cannot be started, or if the file needs more memory than this machine has left, which is less

@@ -91,7 +91,7 @@ void put_positions(WireWriter& to, const std::vector<glm::dvec3>& positions) {
   to.put_values<glm::vec3>(positions.size(), [&](std::size_t i) { return glm::vec3(positions[i]); });
 }
 
-/// Writes numbers most of which exceed their predecessor by `step`.
+/// Writes numbers, most of which exceed their predecessor by `step`.
 void put_numbers(WireWriter& to, std::span<const std::uint32_t> numbers, std::uint32_t step) {
   std::vector<NumberRun> runs;
   for (const std::uint32_t number : numbers) {

@@ -140,13 +140,13 @@ class WireReader {
 /// writers throw on it) as escapes such as "\xe9", from which a user can tell which file or object is meant.
 std::string printable(std::string_view text);
 
-/// A run of `count` numbers: `first`, each following one larger by the list's step.
+/// A run of `count` numbers that begins with `first`; each next number is larger by the list's step.
 struct NumberRun {
   std::uint32_t first = 0, count = 0;
 };
 
 /// Writes a soup, which must stay unchanged until the writer's pieces have been used. Compact: positions that fit
-/// single precision are sent as such, and object and face numbers that stay the same or count up as runs.
+/// single precision are sent as such, and object and face numbers that stay the same or count up are sent as runs.
 void put_soup(WireWriter& to, const TriangleSoup& soup);
 /// Checks that every index is in range, every position finite and the arrays of one length; throws WireError.
 TriangleSoup get_soup(WireReader& from);

@@ -32,7 +32,8 @@ struct OpenedBeneath {
 OpenedBeneath open_beneath(int folder, const std::string& name, int flags);
 
 /// Opens `name` in the folder `folder` or below by open_beneath, with the checks of open_input. `shown` is the name in
-/// messages. The error is OpenedBeneath's; throws InputError like open_input if the file could be opened.
+/// messages. `error` and `path` are those of OpenedBeneath; a file that could be opened but fails a check gives an
+/// InputError.
 struct InputBeneath {
   InputFile input;
   std::string path;

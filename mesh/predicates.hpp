@@ -29,8 +29,8 @@ constexpr Side opposite(Side side) {
 Side side_of_plane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& p);
 Side side_of_plane(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& p);
 
-/// Equals side_of_plane() for one plane and many points: the plane's terms are computed once, and in double a side
-/// costs a few products where rounding cannot change the sign.
+/// Equals side_of_plane() for one plane and many points: the plane's terms are computed once, and where rounding in
+/// double cannot change the sign, a side costs only a few products.
 class SidesOfPlane {
  public:
   SidesOfPlane(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) : corners_{a, b, c} {

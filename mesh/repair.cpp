@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repairs a mesh in the process `penumbra-repair`, which alone contains CGAL's GPL packages. The request travels
-// through a file in memory, the answer through a pipe.
+// Repairs a mesh in the process `penumbra-repair`, the only program that contains CGAL's GPL packages. The request
+// travels through a file in memory, the answer through a pipe.
 
 #include "mesh/repair.hpp"
 

@@ -17,7 +17,7 @@ struct RepairOptions {
 };
 
 struct RepairStep {
-  std::string what;  ///< "removed", "stitched", …: a sentence with the count
+  std::string what;  ///< "removed", "stitched", …: forms a sentence with the count
   std::uint64_t count = 0;
 };
 
@@ -31,9 +31,9 @@ struct Repaired {
 /// neighbours consistently and closed parts outward, stitches coinciding borders, fills holes up to a size, and on
 /// request resolves self-intersections. The input is never changed. Objects keep their numbers.
 ///
-/// The program `penumbra-repair` does the work, in a process of its own: it contains CGAL's GPL packages, which must
-/// not become part of the library or of the program `penumbra`. Throws UsageError if a length or a number is out of
-/// range, ResourceError if that program is missing, cannot be started or crashes.
+/// The program `penumbra-repair` does the work, in a separate process: it contains CGAL's GPL packages, which must not
+/// become part of the library or of the program `penumbra`. Throws UsageError if a length or a number is out of range,
+/// ResourceError if that program is missing, cannot be started or crashes.
 Repaired repair(const TriangleSoup& soup, const RepairOptions& options);
 
 /// Throws the ResourceError of repair() if `penumbra-repair` is missing; call before long work begins.

@@ -26,7 +26,7 @@ std::optional<Side> common_side(const MeshView& mesh, const Triangle& t, std::sp
   return first;
 }
 
-/// Returns whether (a, b, c) and (a, b, d) lie on one plane, with c and d on either side of their edge: then their
+/// Returns whether (a, b, c) and (a, b, d) lie on one plane, with c and d on opposite sides of their edge: then their
 /// contributions cancel for every p. `off_plane` is any point that is not on the plane.
 bool always_cancel(const MeshView& mesh, const Edge& edge, std::uint32_t c, std::uint32_t d,
                    std::span<const glm::dvec3> corners) {

@@ -40,8 +40,8 @@ std::vector<SilhouetteEdge> silhouette_edges(const MeshView& mesh, const EdgeGra
 /// corners, the corners of a box of receivers), ascending: conservative, and exact except for edges with triangles that
 /// the hull's points see from both sides. No edge is missed: (a, b, c; p) is affine in p, so a triangle whose sign is
 /// the same at every corner has that sign on the whole hull. An edge is dropped only if all its triangles have such a
-/// sign and these sum to 0, or if they cancel in pairs on the same plane on either side of the edge, where the signs
-/// are opposite for every p.
+/// sign and these sum to 0, or if they cancel in pairs: two triangles on the same plane and on opposite sides of the
+/// edge have opposite signs for every p.
 std::vector<std::uint32_t> possible_silhouette_edges(const MeshView& mesh, const EdgeGraph& graph,
                                                      std::span<const glm::dvec3> corners);
 

@@ -12,8 +12,8 @@ namespace penumbra::mesh {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Triangles as read from a file: the default path, on which nothing is ever dropped silently. Positions may repeat,
-/// triangles may be degenerate, doubled, open, non-manifold. Lengths in the file's unit, double precision.
+/// Triangles as read from a file: the default representation, from which nothing is ever dropped silently. Positions
+/// may repeat, triangles may be degenerate, doubled, open, non-manifold. Lengths in the file's unit, double precision.
 struct TriangleSoup {
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;         ///< indices into positions, all in range

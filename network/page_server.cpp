@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// HTTP and WebSocket server by Boost.Beast, asynchronous on one thread, which runs all of the following except make()
-// of files. Connections own themselves (shared_ptr) while one of their operations is pending, as usual with Asio.
+// HTTP and WebSocket server by Boost.Beast, asynchronous on one thread, which runs all code below except
+// ServedFile::make(). Connections own themselves (shared_ptr) while one of their operations is pending, as usual with
+// Asio.
 #include "network/page_server.hpp"
 
 #include "base/error.hpp"

@@ -31,7 +31,7 @@ struct ServedFile {
   std::string path;  ///< beginning with a slash
   std::string type;  ///< MIME
   std::string name;  ///< default name when a browser saves the file; empty: a part of the page
-  /// Makes the content from the request's target (parameter_of()). Runs on a thread of its own, one request after the
+  /// Makes the content from the request's target (parameter_of()). Runs on a separate thread, one request after the
   /// other. UsageError and InputError become a response 400 with the message, other exceptions a response 500.
   std::function<std::string(std::string_view target)> make;
 };
@@ -64,12 +64,12 @@ class PageHandler {
   virtual void closed(ClientId client) = 0;
 };
 
-/// Serves a page and its WebSocket, by a thread of its own, until it is destroyed. A request without the token, to
-/// another host than the place's or the loopback, or from another page's origin is answered 403, whatever its target.
-/// Thread-safe.
+/// Serves a page and its WebSocket on a separate thread until it is destroyed. A request is answered with 403, whatever
+/// its target, if it has no token, names a host other than the place's or the loopback, or comes from another page's
+/// origin. Thread-safe.
 class PageServer {
  public:
-  /// Starts the server. `handler` must outlive this object. Throws UsageError for a host that is no single address,
+  /// Starts the server. `handler` must outlive this object. Throws UsageError for a host that is not a single address,
   /// ResourceError if the port is taken or the address is not this machine's.
   PageServer(ServerOptions options, PageHandler& handler);
   PageServer(const PageServer&) = delete;
@@ -88,8 +88,8 @@ class PageServer {
   void send_to_all(std::string text);
   /// Sends a message to all clients but `except` (0: to all); replaces a previous message not yet sent to a client.
   void send_newest(std::string text, ClientId except = 0);
-  /// Sends a binary message to all clients in the same manner; a client gets the next after calling taken() for the
-  /// previous.
+  /// Sends a binary message to all clients in the same manner; a client gets the next one only after taken() was called
+  /// for its previous one.
   void send_frame(std::shared_ptr<const std::string> frame);
   /// Records that the client has shown its most recent frame.
   void taken(ClientId client);

@@ -28,7 +28,7 @@ std::optional<std::string_view> raw_parameter(std::string_view target, std::stri
   return std::nullopt;
 }
 
-/// Returns the value of a hexadecimal digit; −1: none.
+/// Returns the value of a hexadecimal digit; −1 for any other character.
 int digit_of(char c) {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;

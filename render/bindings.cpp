@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Descriptor sets of one pipeline, made from what its shaders declare. Each bind takes a pool of its own, which lives
-// as long as the commands' recording.
+// Descriptor sets of one pipeline, made from the declarations in its shaders. Each bind takes a separate pool, which
+// lives as long as the commands' recording.
 
 #include "render/bindings.hpp"
 

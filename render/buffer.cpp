@@ -29,7 +29,7 @@ vk::raii::Buffer make_vk_buffer(const Device::State& device, std::uint64_t bytes
   return {device.device, vk::BufferCreateInfo({}, bytes, usage, vk::SharingMode::eExclusive)};
 }
 
-/// Runs one copy in a command buffer of its own, and waits for its end.
+/// Runs one copy in a separate command buffer, and waits for its end.
 void copy_and_wait(Device::State& device, vk::Buffer from, vk::Buffer to, const vk::BufferCopy& region) {
   const vk::CommandBufferAllocateInfo info(*device.pool, vk::CommandBufferLevel::ePrimary, 1);
   const vk::raii::CommandBuffer commands = std::move(vk::raii::CommandBuffers(device.device, info).front());

@@ -14,7 +14,7 @@
 namespace penumbra::render {
 
 /// A command buffer: passes record into it, submit() runs it to its end. A full memory barrier separates any two
-/// recorded passes: simple and correct; performance depends on the inside of passes.
+/// recorded passes: simple and correct; performance depends on the work inside passes.
 class Commands {
  public:
   explicit Commands(const Device& device);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compute pipelines, compiled once a device for each name, code and specialization. More workgroups than one dimension
-// takes are laid out in two.
+// Compute pipelines, compiled once per device for each name, code and specialization. If there are more workgroups than
+// one dimension can have, they are laid out in two.
 
 #include "render/compute_pass.hpp"
 

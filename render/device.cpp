@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Makes a Vulkan 1.3 instance and device: chooses among physical devices, enables the features that exist, collects
-// messages of the validation layer, and where the loader makes no instance gives the loader's own reason.
+// messages of the validation layer, and reports the loader's own reason if the loader makes no instance.
 
 #include "render/device.hpp"
 
@@ -157,8 +157,8 @@ unsigned driver_threads() {
   return 2 * std::clamp(std::thread::hardware_concurrency(), 1U, kLargestTeam) + 2;
 }
 
-/// Memory that this driver takes for its compiler and its threads' stacks before the first pass runs, with a reserve.
-/// The driver does not check that it got the memory.
+/// Memory that Mesa's driver for processors takes for its compiler and its threads' stacks before the first pass runs,
+/// with a reserve. The driver does not check that it got the memory.
 constexpr std::uint64_t kDriverBytes = std::uint64_t{256} << 20;
 
 }  // namespace

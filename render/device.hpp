@@ -44,8 +44,8 @@ std::vector<DeviceInfo> list_devices();
 struct DeviceOptions {
   std::string wanted;        ///< a part of the name (case ignored), the index, "cpu", or empty: the best device
   bool validation = false;   ///< validation layer with synchronization validation; see Device::take_validation_messages
-  bool only_checks = false;  ///< passes are created to be refused or not, and never run: their compilation, which may
-                             ///< take seconds, is skipped
+  bool only_checks = false;  ///< passes are created only to check whether they are refused, and never run: their
+                             ///< compilation, which may take seconds, is skipped
 };
 
 /// Device limits that code here depends on.

@@ -7,7 +7,8 @@
 namespace penumbra::render::gpu {
 using uint = std::uint32_t;
 inline constexpr uint kStripsConstant = 100;
-/// Value of this constant on processors. A strip of a picture of 512 x 512 pixels is eight rows.
+/// Value of the specialization constant kStripsConstant on processors. A strip of a picture of 512 x 512 pixels is
+/// eight rows.
 inline constexpr uint kStripsOnProcessor = 64;
 }  // namespace penumbra::render::gpu
 #else

@@ -8,9 +8,9 @@
 
 namespace penumbra::render {
 
-/// The hardware for a run: the processor, always, and one Vulkan device, which is made on first use. So work for the
-/// processor alone runs without a Vulkan loader or driver. Copies share the device, which lives as long as the last of
-/// them. Thread-safe; the device itself is for one thread at a time.
+/// The hardware for a run: always the processor, and one Vulkan device, which is made on first use, so that work for
+/// the processor alone runs without a Vulkan loader or driver. Copies share the device, which lives as long as the last
+/// of them. Thread-safe; the device itself is for one thread at a time.
 class Machine {
  public:
   explicit Machine(DeviceOptions options = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses a device: the one that is asked for; else discrete before integrated before virtual before processors, and
-// among those of one kind the one that lacks fewer features.
+// Chooses a device: the requested one; else discrete before integrated before virtual before processors, and among
+// those of one kind the one that lacks fewer features.
 
 #include "render/physical_device.hpp"
 
@@ -40,7 +40,7 @@ std::string version_text(std::uint32_t version) {
                      VK_API_VERSION_PATCH(version));
 }
 
-/// Each feature that all of Penumbra needs: its member in Vulkan, and its purpose.
+/// Returns the features that all of Penumbra needs and the device lacks: each with its name in Vulkan, and its purpose.
 std::vector<std::string> missing_features(const vk::raii::PhysicalDevice& physical) {
   const auto chain = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
                                            vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>();

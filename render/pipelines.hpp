@@ -15,7 +15,7 @@
 
 namespace penumbra::render {
 
-/// A pipeline with what its shaders declare.
+/// A pipeline, and the interface that its shaders declare.
 struct KeptPipeline {
   std::uint32_t push_bytes = 0;
   Bindings bindings;

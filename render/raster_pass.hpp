@@ -52,8 +52,8 @@ struct RasterPassOptions {
 };
 
 /// A graphics pipeline without vertex inputs or colours: vertices are read from storage buffers, results go to depth or
-/// to storage buffers. Bindings and push constants are reflected and checked as in ComputePass, and the device caches
-/// the pipeline likewise.
+/// to storage buffers. As in ComputePass, bindings and push constants are reflected and checked, and the device caches
+/// the pipeline.
 class RasterPass {
  public:
   RasterPass(const Device& device, const RasterPassOptions& options);

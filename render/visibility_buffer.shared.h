@@ -15,7 +15,7 @@ struct VisibilityBufferPush {
   DOUBLE3(eye);
   DOUBLE3(right);
   DOUBLE3(up);
-  DOUBLE3(middle);  // not forward: a shifted lens points elsewhere
+  DOUBLE3(middle);  // toward the picture's centre; not forward if the lens is shifted
   double tan_half_fov;
   uint width, height;         // size of the whole picture
   uint first_row, row_count;  // the band in the buffers

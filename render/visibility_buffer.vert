@@ -39,7 +39,7 @@ void main() {
     const double z = dot(d, forward);
     const double reach = abs(d.x) + abs(d.y) + abs(d.z);
     any_in_front = any_in_front || z > 0.0;
-    // Below this a projection could be off by a pixel; the whole screen is then proposed.
+    // At smaller z a projection could be off by a pixel; the whole screen is then proposed.
     if (z <= reach * 1e-9) {
       any_behind = true;
       continue;

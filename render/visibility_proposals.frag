@@ -11,7 +11,7 @@ STORAGE(1) readonly buffer Push {
   uint counts[4];  // width, height, first row, rows
 };
 STORAGE(2) buffer Proposals {
-  uint count;    // also counts those that found no space
+  uint count;    // also counts proposals that found no space
   uint found[];  // pixel of the band and triangle, alternating
 };
 

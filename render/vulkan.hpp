@@ -104,7 +104,7 @@ struct Commands::State {
   bool recording = false;
   bool host_timed = false;
   std::vector<visibility::PassTime> host_times;
-  std::vector<visibility::PassTime> earlier;  // times of passes that host_pass had to run; submit's first
+  std::vector<visibility::PassTime> earlier;  // times of passes that host_pass had to run; submit returns them first
   std::chrono::steady_clock::time_point opened;
 
   void begin_if_needed();

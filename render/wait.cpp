@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Waits for the device that always end. A driver for processors that could not start its threads (a limit on processes)
-// accepts work and never does it; a device can hang. The time that a pass needs is unknown, but if the device is this
-// very process, it is known whether it works: then the process's other threads use the processor.
+// Bounded waits for the device. A driver for processors that could not start its threads (a limit on
+// processes) accepts work and never does it; a device can hang. The time that a pass needs is unknown, but if the
+// device is this very process, it is known whether it works: then the process's other threads use the processor.
 #include "base/error.hpp"
 #include "render/vulkan.hpp"
 

@@ -50,8 +50,8 @@ bool strictly_inside(const Box& inner, const Box& outer) {
   return true;
 }
 
-/// Returns six times the signed volume. Reversing every triangle exactly negates it: repairing twice reverses nothing
-/// twice.
+/// Returns six times the signed volume. Reversing every triangle exactly negates the volume, so that a second repair
+/// reverses nothing.
 double volume(const TriangleSoup& soup, const std::vector<std::uint32_t>& triangles) {
   const glm::dvec3 origin = soup.positions[soup.triangles[triangles[0]][0]];
   double sum = 0;
@@ -77,8 +77,8 @@ std::vector<std::uint32_t> inverted_parts(const TriangleSoup& soup, const Surfac
   return {inverted.begin(), inverted.end()};
 }
 
-/// Fallback if such orientations are not defined: returns the parts of negative volume that are inside no other part's
-/// bounds.
+/// Fallback if CGAL cannot orient the parts to bound a volume: returns the parts of negative volume that are inside no
+/// other part's bounds.
 std::vector<std::uint32_t> inside_out_parts(const TriangleSoup& soup, const SurfaceParts& parts) {
   std::vector<std::uint32_t> closed;
   std::vector<Box> boxes;

@@ -34,7 +34,7 @@ class Subdivision {
       if (graph.kind[t] != TriangleKind::collinear) continue;
       Triangle corners = graph.corners(soup.triangles[t]);
       std::ranges::sort(corners, before);
-      middle_.emplace(edge(corners[0], corners[2]), corners[1]);  // keeps the first triangle's, if there are several
+      middle_.emplace(edge(corners[0], corners[2]), corners[1]);  // the first triangle's, if there are several
     }
   }
 
@@ -126,7 +126,7 @@ class Duplicates {
       if (faces[i].sorted != faces[i - 1].sorted) continue;
       if (faces[i].even == faces[i - 1].even) {
         remove(faces[i].triangle);
-      } else {  // the first triangle of either winding: odd ones come first
+      } else {  // pairs the first triangle of each winding; odd ones come first
         std::size_t first = i - 1;
         while (first > 0 && faces[first - 1].sorted == faces[i].sorted) --first;
         pairs_.emplace_back(faces[first].triangle, faces[i].triangle);
@@ -134,7 +134,8 @@ class Duplicates {
     }
   }
 
-  /// Removing a triangle may make its neighbours' edges odd: repeated until nothing changes.
+  /// Returns which triangles remain. Repeats until nothing changes, since a removed triangle may leave its neighbours'
+  /// edges with an odd number of triangles.
   std::vector<bool> kept() {
     for (bool changed = true; changed;) {
       changed = false;

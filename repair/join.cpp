@@ -125,8 +125,8 @@ class Joiner {
     }
   }
 
-  /// Sorts the triangles around the edge and joins those that bound a solid, as brackets: a triangle whose back looks
-  /// counter-clockwise opens, one whose back looks clockwise closes. At equal angles, closing comes first: the two
+  /// Sorts the triangles around the edge and joins those that bound a solid, like brackets: a triangle whose back faces
+  /// counter-clockwise opens, one whose back faces clockwise closes. At equal angles, closing comes first: the two
   /// sides of a plate are joined to the next triangles on their sides, and the wall between two solids to the triangles
   /// of each solid.
   void link_around(std::uint32_t edge) {
@@ -189,8 +189,9 @@ class Joiner {
     return {fan_[ends(half_edge).first], fan_[ends(half_edge).second]};
   }
 
-  /// Calls `visit` with each set of half-edges at the edge that have the same key, if the set is larger than one joined
-  /// pair: indices whose ends have that `key` would not determine the pairs.
+  /// Calls `visit` with each set of half-edges at the edge that have the same key, if the set is more than one joined
+  /// pair. If `key` is the pair of indices at the edge's ends, these indices would not determine which triangles are
+  /// joined.
   template <typename Key, typename Visit>
   void for_each_crowd(std::uint32_t edge, Key key, Visit visit) const {
     if (graph_.around(edge).size() < 2) return;
@@ -204,8 +205,8 @@ class Joiner {
     }
   }
 
-  /// Cuts off all but one pair of triangles, each triangle alone, where a surface touches itself along one edge and is
-  /// one fan around both ends: indices cannot represent that. Returns whether there was such an edge.
+  /// Where a surface touches itself along one edge and is one fan around both ends, which indices cannot represent,
+  /// cuts off all triangles but one pair, each one separately. Returns whether there was such an edge.
   bool detach_crowded() {
     std::set<std::uint32_t> detached;
     const auto detach_all_but_a_pair = [&](std::span<const std::uint32_t> crowd) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// penumbra-repair: repairs one mesh in a process of its own, the only program here that contains CGAL's GPL packages.
-// Not for users: penumbra starts it, passes the mesh as a file and reads its answer from its standard output
+// penumbra-repair: repairs one mesh in a separate process; the only program here that contains CGAL's GPL packages. Not
+// for users: penumbra starts it, passes the mesh as a file and reads its answer from its standard output
 // (mesh/repair.cpp).
 
 #include "base/error.hpp"

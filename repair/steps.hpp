@@ -55,7 +55,7 @@ TriangleSoup remove_empty_triangles(const TriangleSoup& soup, double weld, Repai
 
 /// Removes triangles with the vertices and the winding of an earlier one; and the later of two oppositely wound
 /// triangles where one of their edges has an odd number of triangles. Other opposite pairs are the two sides of a plate
-/// or the wall between two solids: these are closed with them and open without.
+/// or the wall between two solids: such parts are closed with the pair and open without it.
 TriangleSoup remove_duplicates(const TriangleSoup& soup, double weld, RepairRecord& record);
 
 /// Winds neighbours consistently, joins triangles that meet at an edge in pairs (at edges of more than two, the pairs

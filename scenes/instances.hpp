@@ -20,7 +20,7 @@ namespace penumbra::scenes {
 struct Placement {
   glm::dmat4 to_world{1};
   /// Order of the sums, so that an instance equals the mesh's copy in the world to the last bit. True: the offset is
-  /// added last, as readers of JSON add it; false: the products are added two and two, as readers of glTF do.
+  /// added last, as readers of JSON add it; false: the products are added in pairs, as readers of glTF do.
   bool offset_last = false;
 
   [[nodiscard]] glm::dvec3 operator()(const glm::dvec3& x) const {
@@ -57,7 +57,7 @@ struct Instance {
 /// Triangles of a scene that are not in its soup, because their meshes are shared. Their numbers are those that they
 /// would have in the soup.
 struct Instances {
-  /// Never null. Never changed, so that its holders know what it is (visibility/seen/ keeps trees over them).
+  /// Never null, and never changed, so that trees over these meshes (visibility/seen/) stay valid.
   std::vector<std::shared_ptr<const SharedMesh>> meshes;
   std::vector<Instance> all;  ///< in the order of their triangles' numbers
 
@@ -70,7 +70,7 @@ struct Instances {
 /// Number of triangles up to which instances are copied by default: copies cost less than doing without them.
 inline constexpr std::uint64_t kFewCopies = 500'000;
 
-/// Returns the number of the scene's triangles, those of instances included.
+/// Returns the number of the scene's triangles, including those of instances.
 std::uint64_t triangle_count(const Scene& scene, const Instances& instances);
 
 /// Returns the index into Scene::objects of a triangle, by its number in the whole scene.
@@ -81,7 +81,7 @@ class SoupBuilder {
  public:
   /// Adds lists of looks if the scene or a mesh has them. All arguments must outlive this object.
   SoupBuilder(Scene& to, const Scene& from, const Instances& instances);
-  /// Adds a triangle of from's soup.
+  /// Adds a triangle of the soup of `from`.
   void add_own(std::uint32_t triangle);
   /// Adds a triangle of an instance. Triangles of one instance must follow one another.
   void add(const Instance& instance, std::uint32_t triangle);
@@ -97,7 +97,7 @@ class SoupBuilder {
   const Scene& from_;
   const Instances& instances_;
   bool normals_, colors_, places_;
-  std::vector<std::uint32_t> own_;       // new number of each position of from's soup; kNone: not added yet
+  std::vector<std::uint32_t> own_;       // new number of each position of the soup of `from`; kNone: not added yet
   std::vector<std::uint32_t> number_;    // new number of each position of the current instance
   std::vector<std::uint32_t> numbered_;  // positions of the current instance that were added
   const Instance* at_hand_ = nullptr;
@@ -105,8 +105,8 @@ class SoupBuilder {
 };
 
 /// Returns the scene with every instance's triangles in its soup. `more_bytes`: memory for each triangle that the
-/// caller needs afterwards, beside the scene. Throws ResourceError, with the figures, before anything is copied if
-/// memory does not suffice.
+/// caller needs afterwards, in addition to the scene. Throws ResourceError, with the figures, before anything is copied
+/// if memory does not suffice.
 Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes);
 
 }  // namespace penumbra::scenes

@@ -98,8 +98,9 @@ Scene joined(std::span<const ScenePart> parts, bool with_meshes) {
   UniqueNames object_names, light_names;
   std::vector<std::size_t> shadeless;
   std::set<const Scene*> warned;
-  // For each scene with a part that has objects. Lights have pictures of their own: numbers do not depend on their
-  // parts, so that they hold for the pictures of an earlier result with the same objects.
+  // Number of the first picture of each scene with a part that has objects. Lights store their pictures themselves, so
+  // parts with only lights do not change these numbers: they also hold for the pictures of an earlier result with the
+  // same objects.
   std::map<const Scene*, std::uint32_t> first_picture;
   std::uint32_t pictures = 0;
   for (const ScenePart& part : parts) {

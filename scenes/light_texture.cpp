@@ -21,7 +21,7 @@
 namespace penumbra::scenes {
 namespace {
 
-/// A picture of the largest size takes 200 MB to read; OpenEXR adds lines of all channels of a file.
+/// A picture of the largest size takes 200 MB to read; OpenEXR also keeps lines of all channels of a file in memory.
 constexpr mesh::ImportLimits kTextureLimits{.memory_bytes = 1ull << 30, .output_bytes = 64ull << 20};
 constexpr mesh::ImportLimits kSkyLimits{.memory_bytes = 4ull << 30, .output_bytes = 512ull << 20};
 
@@ -32,7 +32,7 @@ struct PictureKind {
   std::uint32_t largest_side;
 };
 
-/// Sets negative values to 0. Returns a warning that says how many texels had any; nullopt: none.
+/// Sets negative values to 0. Returns a warning with the number of texels that had any; nullopt if there were none.
 std::optional<std::string> without_negative(Texture& texture, const std::string& shown) {
   std::size_t texels = 0;
   float least = 0;

@@ -26,7 +26,8 @@ inline constexpr std::uint32_t kLargestSkySide = 8192;
 /// anything else, and for texels as check_texture does.
 Texture read_texture(const mesh::InputFile& input, const std::string& shown, std::vector<std::string>& warnings);
 
-/// Reads a picture of the sky as read_texture does; the picture may be larger, and a Radiance picture (RGBE), too.
+/// Reads a picture of the sky as read_texture does; the picture may be larger, and may also be a Radiance picture
+/// (RGBE).
 Texture read_sky_picture(const mesh::InputFile& input, const std::string& shown, std::vector<std::string>& warnings);
 
 /// Throws InputError, with the texel, unless the size is within `largest_side`, the number of texels fits, and texels

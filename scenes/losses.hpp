@@ -21,8 +21,8 @@ class Losses {
   /// Adds warnings of refused losses only, for callers that do not use appearances.
   void warn_of_refused(std::vector<std::string>& warnings) const;
 
-  /// Throws InputError with all refused losses, if there are any. `lenient`: what the command does in spite of them
-  /// with --lenient.
+  /// Throws InputError with all refused losses, if there are any. `lenient`: verb for what the command does with
+  /// --lenient despite the losses.
   void throw_refused(const char* lenient = "renders") const;
   /// Inserts warnings of all losses before existing ones, more important losses first.
   void warn(std::vector<std::string>& warnings) const;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Width and height of a camera's picture: an aspect of its own keeps the longer side of the scene's.
+// Width and height of a camera's picture: for a camera with its own aspect, the longer side is that of the scene's
+// size.
 
 #include "scenes/picture_size.hpp"
 

@@ -92,7 +92,7 @@ struct Sun {
   glm::dvec3 direction;  ///< direction in which its light travels (unit length)
   double angle = 0;      ///< full apparent diameter in degrees, 0 ≤ angle < 180; 0: a point
 };
-/// Returns the irradiance of a surface that faces the sun, over the sun's radiance: π sin²(angle / 2).
+/// Returns the irradiance of a surface that faces the sun, divided by the sun's radiance: π sin²(angle / 2).
 inline double irradiance_of_radiance(const Sun& sun) {
   const double sine = std::sin(sun.angle / 360 * std::numbers::pi);
   return std::numbers::pi * sine * sine;
@@ -105,7 +105,7 @@ struct Dome {
   glm::dvec3 up{0, 1, 0};  ///< unit length
   double rotate = 0;       ///< degrees, right-handed about `up`
   bool half = false;
-  bool sampled = false;    ///< counted in light samples where a method is free to give areas
+  bool sampled = false;    ///< uses light samples where a method could also compute exact areas
   std::string image = {};  ///< file name of the picture in the scene; empty: constant radiance
 };
 /// Several pieces that form one light: an emitter with bends or separate parts, cut into pieces.
@@ -150,7 +150,7 @@ struct Camera {
   double vertical_fov = 45;           ///< degrees
   std::optional<double> height = {};  ///< for an orthographic camera: height of the picture in world units, in place of
                                       ///< an angle
-  std::optional<double> aspect = {};  ///< the picture's width over its height, if the file has one
+  std::optional<double> aspect = {};  ///< the picture's width divided by its height, if the file has one
   /// A shifted lens: position of the picture's centre, right of and above the point that the camera looks at, in
   /// picture heights. The view is shifted, not rotated.
   glm::dvec2 shift{0};

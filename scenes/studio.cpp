@@ -137,8 +137,8 @@ const char* name_of(AddedLight::Kind kind) {
 }  // namespace
 
 void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish) {
-  // Computed before the scene changes: `rest` may be the same object. Without positions, or with instances beside them,
-  // only what has no place was requested: a camera in full, domes.
+  // Computed before the scene changes: `rest` may be the same object. If the scene has no positions, or also has
+  // instances, then only a fully specified camera or domes were requested: the bounds do not matter for these.
   const Bounds bounds = rest.soup.positions.empty() ? Bounds() : bounds_of(rest.soup.positions);
   const bool on_floor = has_floor(rest, bounds);
   const glm::dvec3 middle = bounds.middle();

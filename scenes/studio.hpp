@@ -23,7 +23,7 @@ struct AddedLight {
   double size = 0;   ///< side of a square, radius of a sphere, apparent diameter of a sun in degrees
 };
 
-/// Returns whether the light is placed by what is in the scene.
+/// Returns whether the light's place depends on the content of the scene.
 constexpr bool has_place(const AddedLight& light) {
   return light.kind != AddedLight::Kind::dome;
 }
@@ -32,14 +32,14 @@ struct StudioWish {
   bool always = false;                  ///< also around a scene that has lights
   bool never = false;                   ///< a scene without lights is an error
   bool floor = true;                    ///< whether a studio has a floor; a scene that already has one gets none
-  bool sampled_domes = false;           ///< added domes are counted in light samples (Dome::sampled)
+  bool sampled_domes = false;           ///< added domes use light samples (Dome::sampled)
   double aspect = 1;                    ///< aspect of the picture, width over height, for cameras that see all
   std::vector<AddedLight> lights = {};  ///< added also to a scene that has others
   std::string fit_camera = {};          ///< name of an added first camera that sees all; empty: none
   std::optional<Camera> camera = {};    ///< added as the first camera
 };
 
-/// Adds the wished objects, and a studio if the scene has no light or `wish.always`, unless `wish.never`; then a
+/// Adds the requested objects, and a studio if the scene has no light or `wish.always`, unless `wish.never`; then a
 /// camera, if there is none. Adds a warning about this. `rest`: the same scene at rest, around which everything is
 /// placed, so that a studio does not move in a sequence.
 void put_in_studio(Scene& scene, const Scene& rest, const StudioWish& wish);

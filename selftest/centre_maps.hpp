@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Maps of a stage's light from its centre, rendered as by methods, and read back.
+// Maps of a stage's light from its centre, rendered as methods do, and read back.
 
 #include "maps/host/caster_maps.hpp"
 #include "maps/host/light_basis.hpp"
@@ -16,8 +16,8 @@
 namespace penumbra::selftest {
 
 struct CentreMaps {
-  /// Further options of the maps: peeled layers, and the farthest after them; windows for all occluders of the light,
-  /// or all casters; and the rasteriser.
+  /// Further options of the maps: the number of peeled layers, and whether the farthest surfaces follow them; windows
+  /// for all occluders of the light, or for all casters; and the rasteriser.
   struct More {
     std::uint32_t layers = 1;
     bool farthest = false, whole_light = false, all_casters = false;

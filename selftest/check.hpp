@@ -18,7 +18,7 @@ struct Check {
   std::uint64_t differing = 0;  ///< number of values that differ from the twin's
   std::uint64_t wrong = 0;      ///< number of values that violate the rule
   double largest = 0,
-         allowed = 0;     ///< the difference nearest to its bound, or farthest beyond, and this bound
+         allowed = 0;     ///< the difference nearest to its bound, or farthest beyond it, and this bound
   std::string first{};    ///< location and value of the first violation
   std::string refused{};  ///< reason why the check could not run, if so
   bool lacking = false;   ///< the check could not run because this device lacks a feature needed by the pass: not a

@@ -33,9 +33,9 @@ struct SilhouetteTally {
   std::size_t points = 0, silhouettes = 0, ties = 0, open = 0;
 };
 
-/// Compares SilhouettePass (which has the mesh) from `l` with mesh::facings and mesh::signed_multiplicity, both exact:
-/// every triangle's side, every silhouette edge with its multiplicity, in order. `counted`: for each triangle, the
-/// counted sides.
+/// Compares SilhouettePass (which has the mesh), as seen from `l`, with mesh::facings and mesh::signed_multiplicity,
+/// both exact: every triangle's side, every silhouette edge with its multiplicity, in order. `counted`: for each
+/// triangle, the counted sides.
 Check check_silhouettes(volumes::SilhouettePass& pass, const EdgeMesh& mesh, const glm::vec3& l,
                         const std::vector<std::uint32_t>& counted, SilhouetteTally& tally);
 

@@ -118,7 +118,7 @@ Check check_nearest_ids(const render::Device& device, const Stage& stage, std::u
       for (const Surface& surface : surfaces) {
         if (surface.sure) limit = std::min(limit, surface.high);
       }
-      // Surfaces within 2⁻²⁰ are one; plus another rounding, of the product.
+      // Surfaces within 2⁻²⁰ count as one; the product adds another rounding.
       limit *= 1 + 0x1p-20 + 0x1p-22;
       const std::uint32_t id = found[std::size_t{face} * size * size + i];
       const auto may_be = [&](const Surface& s) { return s.low <= limit && ids[s.triangle] == id; };
@@ -238,7 +238,7 @@ Check check_slices(const render::Device& device, const Stage& stage, std::uint32
       return 0;
     };
     for (std::uint32_t y = 0; y < size; ++y) {
-      // A sideways face's rows are heights over the light's plane, one along.
+      // Rows of a sideways face are heights over the light's plane at a depth of 1.
       const double along = static_cast<double>(view.far) * (sideways ? (y + 0.5) / size : 1.0);
       for (std::uint32_t x = 0; x < size; ++x) {
         twin.find(x, y, surfaces);

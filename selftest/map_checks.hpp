@@ -14,11 +14,12 @@
 
 namespace penumbra::selftest {
 
-/// Compares NearestCaster: the smallest height over the light's plane of each side's texels. Bit by bit.
+/// Compares NearestCaster, bit by bit: for each side of the light, the smallest height of its texels over the light's
+/// plane.
 Check check_nearest_caster(const render::Device& device, const Stage& stage, std::uint32_t size);
 
-/// Compares NearestIds: each texel has a triangle that may be its nearest surface (RasterTwin), and none where none may
-/// be.
+/// Compares NearestIds: each texel has a triangle that may be its nearest surface (RasterTwin), or no triangle if it
+/// may have no surface.
 Check check_nearest_ids(const render::Device& device, const Stage& stage, std::uint32_t size,
                         maps::Rasteriser rasteriser);
 
@@ -27,7 +28,8 @@ Check check_summed_areas(const render::Device& device, std::span<const std::uint
 /// Returns Crow's sums of one image, modulo 2³².
 std::vector<std::uint32_t> summed_areas(std::span<const std::uint32_t> image, std::uint32_t size);
 
-/// Compares DepthPyramid of `faces` maps: the header, and each node with its texels alone. Bit by bit.
+/// Compares DepthPyramid of `faces` maps: the header, and each node with the value computed from only its texels. Bit
+/// by bit.
 Check check_depth_pyramid(const render::Device& device, maps::PyramidKind kind, std::span<const float> depths,
                           std::uint32_t size, std::uint32_t faces);
 

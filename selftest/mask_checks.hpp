@@ -15,8 +15,8 @@ namespace penumbra::selftest {
 /// covers all passes of the method.
 Check check_masks(visibility::Method& method, const Stage& stage, const std::string& name);
 
-/// Counts of the cases in a check of counters: pairs; and among these, pairs without a counter, with any triangle met,
-/// and with several.
+/// Counts of the cases in a check of counters: all pairs; among these, pairs without a counter, pairs that meet any
+/// triangle, and pairs that meet several.
 struct CounterTally {
   std::size_t pairs = 0, open = 0, met = 0, several = 0;
 };

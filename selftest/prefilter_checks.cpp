@@ -65,7 +65,7 @@ struct Prefiltered {
   maps::gpu::MapFrame found_frame{};
 };
 
-/// Each kind of function once, with its value.
+/// One kind of function, with its value.
 struct Case {
   maps::PrefilterFunction function;
   std::function<double(double)> value;
@@ -88,8 +88,8 @@ std::vector<Case> cases() {
       {{.kind = kSine, .power = kTimesHeight, .a = c}, [=](double t) { return 0.5 + 0.5 * t * std::sin(c * t); }},
       {{.kind = kCosine, .power = kTimesHeight, .a = c}, [=](double t) { return 0.5 + 0.5 * t * std::cos(c * t); }}};
 }
-/// Heights are right to a few units of float32's last place, exponents multiply this by up to 40; exp and sin of a
-/// device are right to 2⁻²⁰ of their argument's range.
+/// Heights are accurate to a few units of float32's last place, and exponents multiply this error by up to 40; exp and
+/// sin of a device are accurate to 2⁻²⁰ of their argument's range.
 constexpr double kFloatError = 128 * 0x1p-23;
 
 maps::PrefilterOptions options_of(maps::PrefilterKind kind) {
@@ -143,7 +143,7 @@ Check check_prefilter_levels(const render::Device& device, const Stage& stage, s
               .rule = "the finest within float's error; the others bit by bit"};
   const Prefiltered found(device, stage, size, options_of(kind));
   const std::uint32_t faces = found.maps.fitted.faces, levels = found.layout.table.levels;
-  // Down to one texel, or to the largest window that fits.
+  // Levels down to one texel, or up to the largest window that fits.
   const auto expected = static_cast<std::uint32_t>(pyramid ? std::bit_width(size - 1) + 1 : std::bit_width(size));
   check.same(levels, expected, [&] { return fmt::format("{} levels of {} texels", levels, size); });
   const std::vector<float> depths = found.maps.read();

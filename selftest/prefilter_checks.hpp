@@ -10,8 +10,8 @@
 
 namespace penumbra::selftest {
 
-/// Compares Prefilter's summed areas, differenced again to digits: for every kind of function of a texel's height, the
-/// sum of the digits with the function in double.
+/// Compares Prefilter's summed areas, whose differences give the digits again: for every kind of function of a texel's
+/// height, compares the sum of the digits with the function in double.
 Check check_prefilter_tables(const render::Device& device, const Stage& stage, std::uint32_t size);
 
 /// Compares Prefilter's mip levels or N-buffers: the finest level with the functions in double, each other level bit by

@@ -4,12 +4,12 @@
 // have the sign of A · (B × C), and 1 / w there is c · (B × C + C × A + A × B) / A · (B × C) (Olano and Greer 1997).
 //
 // Errors. The shader computes x, y and w of a corner by five roundings each of the sum of its products' sizes; the
-// division by w, the viewport and clipping add a few roundings of the coordinates. This moves the lines (first order in
-// each, products of sizes and errors summed). Then the corners are snapped: by a step in x and in y at most, in
-// whatever direction the driver rounds. Every point of the snapped outline is within a step, in x and in y, of the
-// outline before, so a texel is certain where the whole square of this half width around its centre is on one side of
-// each edge. The driver's interpolated value at c is the plane's value at a point in this square; its own arithmetic
-// adds roundings of the terms of the plane.
+// division by w, the viewport and clipping add a few roundings of the coordinates. This moves the lines: to first order
+// in each error, products of sizes and errors are summed. Then the corners are snapped: by a step in x and in y at
+// most, in whatever direction the driver rounds. Every point of the snapped outline is within a step, in x and in y, of
+// the outline before snapping. So the coverage of a texel is certain where the whole square of this half width around
+// its centre is on one side of each edge. The driver's interpolated value at c is the plane's value at a point in this
+// square; its own arithmetic adds roundings of the terms of the plane.
 
 #include "selftest/raster_twin.hpp"
 

@@ -17,7 +17,7 @@ namespace penumbra::selftest {
 struct Surface {
   double depth = 0;          ///< at the texel's centre, of the exact triangle: w / far
   double low = 0, high = 1;  ///< range of depths for a triangle whose corners are off by their largest error
-  bool sure = false;         ///< covered wherever in its step each corner lies; false: possibly covered
+  bool sure = false;         ///< covered wherever each corner lies within its step; false: possibly covered
   std::size_t triangle = 0;  ///< index in the twin
 };
 
@@ -50,12 +50,12 @@ class RasterTwin {
 /// farthest.
 struct Judged {
   bool right = true;
-  bool settled = false;  ///< the texel's surface does not depend on any step; then:
+  bool settled = false;  ///< the texel's surface does not depend on any step; then the next two are valid
   double difference = 0, allowed = 0;
 };
 /// `found`: the map's value, 1 for an empty texel.
 Judged judge_nearest(std::span<const Surface> surfaces, double found);
-/// Judges a layer behind the surface of the previous one; with the factor of peel.frag.
+/// Judges a layer behind the surface of the previous one, with peel.frag's factor between the two.
 Judged judge_behind(std::span<const Surface> surfaces, double found, double previous);
 /// `found`: the map's value, 0 for an empty texel.
 Judged judge_farthest(std::span<const Surface> surfaces, double found);

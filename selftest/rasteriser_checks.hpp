@@ -22,8 +22,8 @@ Check check_view_samples(const render::Device& device, const visibility::SceneFl
 /// farthest, with RasterTwin for the rasteriser's own step.
 Check check_maps(const render::Device& device, const Stage& stage, std::uint32_t size, maps::Rasteriser rasteriser);
 
-/// Compares the nearest and the farthest surfaces of both rasterisers: differences are permitted only where an edge
-/// passes within the sum of both steps of a texel's centre, and by the surface's change within this sum.
+/// Compares the nearest and the farthest surfaces of both rasterisers: any difference is permitted where an edge passes
+/// within the sum of both steps of a texel's centre; elsewhere only the change of the surface's depth within this sum.
 Check check_rasterisers_agree(const render::Device& device, const Stage& stage, std::uint32_t size);
 
 }  // namespace penumbra::selftest

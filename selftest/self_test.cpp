@@ -30,7 +30,7 @@ namespace {
 
 using maps::Rasteriser;
 
-/// Runs one check several times; an error of the machine is the check's own, and the other checks continue.
+/// Runs one check on all its cases. A ResourceError is recorded in the check, and the other checks continue.
 Check repeated(const std::string& pass, const std::function<void(Check&)>& work) {
   Check all;
   all.pass = pass;

@@ -22,7 +22,7 @@ namespace penumbra::selftest {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// Adds a new object of the given triangles, each with vertices of its own.
+/// Adds a new object of the given triangles, each with its own vertices.
 inline scenes::Object& add_object(scenes::Scene& scene, std::string name, const std::vector<Corners>& triangles) {
   const auto object = static_cast<std::uint32_t>(scene.objects.size());
   for (const Corners& corners : triangles) {
@@ -85,7 +85,7 @@ inline scenes::Camera camera(const glm::dvec3& eye, const glm::dvec3& target, do
   return result;
 }
 
-/// Returns a request of `count` light samples, with defaults otherwise.
+/// Returns a request of `count` light samples, with defaults for the other options.
 inline visibility::SampleRequest light_samples(std::uint32_t count) {
   visibility::SampleRequest request;
   request.count = count;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shadow method in one file outside of Penumbra's tree, compared with Penumbra's methods:
 //
-//   own_method SCENE -o DIR      compares it with pcss and hard shadows; the report is DIR/report.html
+//   own_method SCENE -o DIR      compares the method with pcss and hard shadows; the report is DIR/report.html
 //
 // The method is image-space gathering (Robison and Shirley, Image space gathering, High Performance Graphics 2009): one
-// shadow ray a pixel to the light's center gives a hard shadow, which is then averaged over the pixels around. The
+// shadow ray a pixel to the light's center gives a hard shadow, which is then averaged over surrounding pixels. The
 // averaging width is a penumbra's width by similar triangles: the light's size · (d − b) / b, with d and b the
-// distances from the light's center to the receiver and to the nearest blocker of the ray, both of the pixel itself or,
-// if its ray is free, of the pixels around with blocked rays.
+// distances from the light's center to the receiver and to the nearest blocker of the ray. Both come from the pixel
+// itself or, if its ray is free, from surrounding pixels with blocked rays.
 
 #include <penumbra/penumbra.hpp>
 
@@ -80,7 +80,7 @@ class Gathering final : public penumbra::OwnMethod {
     return t;
   }
 
-  /// Calls f(pixel) for the pixels around whose point lies on nearly the same plane.
+  /// Calls f(pixel) for surrounding pixels whose point lies on nearly the same plane.
   template <typename Function>
   void around(std::uint32_t pixel, const Function& f) const {
     const auto width = static_cast<int>(view_.width), height = static_cast<int>(view_.height);

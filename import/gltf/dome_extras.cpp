@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A dome in a node's extras. The node's +Y is the dome's up axis; the turn about it is the angle from where the
-// shortest rotation of +Y leaves +X to the node's own +X.
+// A dome in a node's extras. The node's +Y is the dome's up axis. The shortest rotation from +Y to that axis also moves
+// +X; the dome's rotation about the axis is the angle from there to the node's own +X.
 
 #include "import/gltf/dome_extras.hpp"
 
@@ -20,8 +20,8 @@
 namespace penumbra::import {
 namespace {
 
-/// Returns the rotation in degrees about `up` of a dome whose picture has +X's side at `right` (both unit, at right
-/// angles).
+/// Returns the rotation in degrees about `up` of a dome whose picture has its +X side in the direction `right` (both
+/// unit, at right angles).
 double turn_of(const glm::dvec3& up, const glm::dvec3& right) {
   // Image of +X under the shortest rotation from +Y to `up`, as defined by scenes::Dome.
   glm::dvec3 start(1, 0, 0);

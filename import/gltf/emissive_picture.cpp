@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Means of pictures over triangles: triangles are clipped to rows and texels (Sutherland and Hodgman), large ones
-// sampled.
+// Means of pictures over triangles: triangles are clipped to rows and texels (Sutherland and Hodgman), and large ones
+// are sampled.
 
 #include "import/gltf/emissive_picture.hpp"
 

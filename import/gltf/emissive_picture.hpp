@@ -39,7 +39,7 @@ class PictureMeans {
   const std::vector<scenes::Picture>& pictures_;
   double cells_left_ = 1 << 27;
   /// Means of triangles computed before, by picture, wrap modes and coordinates: many lamps share one picture and the
-  /// places in it.
+  /// same coordinates in it.
   std::map<std::array<double, 9>, glm::dvec3> known_;
 };
 

@@ -160,8 +160,9 @@ const tinygltf::Accessor& find_accessor(const tinygltf::Model& model, int number
   return model.accessors[static_cast<std::size_t>(number)];
 }
 
-/// Returns the number of numbers of all elements together. For an accessor without a buffer view nothing else limits
-/// its count, and a product that overflows would allocate less than the sparse entries then fill.
+/// Returns the number of components of all elements together; throws InputError if no memory holds them. Nothing else
+/// limits the count of an accessor without a buffer view, and a product that overflows would allocate less memory than
+/// its sparse entries then fill.
 std::size_t number_count(const tinygltf::Accessor& accessor, std::size_t components, const std::string& place) {
   constexpr std::size_t kMost = std::numeric_limits<std::ptrdiff_t>::max() / sizeof(double);
   if (accessor.count > kMost / components) {

@@ -26,9 +26,10 @@ struct Numbers {
 /// Treatment of numbers that are not finite.
 enum class NotFinite { refuse, keep };
 
-/// Reads elements of one of these types (TINYGLTF_TYPE_…), components of any type, normalised or not, strided, sparse,
-/// or all zero (no buffer view); `what` names them in messages. Throws InputError with the accessor's or the view's
-/// place if they do not fit the buffer, or (NotFinite::refuse) if one is not finite.
+/// Reads an accessor whose elements have one of these types (TINYGLTF_TYPE_…). Its components may have any type, and
+/// may be normalised, strided, sparse, or all zero (no buffer view). `what` names the accessor in messages. Throws
+/// InputError with the accessor's or the view's place if they do not fit the buffer, or (NotFinite::refuse) if one is
+/// not finite.
 Numbers read_numbers(const tinygltf::Model& model, int accessor, std::initializer_list<int> types, const char* what,
                      NotFinite not_finite = NotFinite::refuse);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A glTF camera, perspective or orthographic, as the program's own; aperture, focus and shift of its lens come from the
-// extras, since glTF 2.0 has none of them.
+// Converts a glTF camera, perspective or orthographic, to the program's own. Aperture, focus and shift of its lens come
+// from the extras, since glTF 2.0 has none of them.
 
 #include "import/gltf/gltf_camera.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses animations: those that are named; else, in the file's order, each that moves nothing that one chosen before
-// it moves.
+// Chooses the animations that the caller names. Without names, chooses in the file's order each animation that moves no
+// property which an already chosen one moves.
 
 #include "import/gltf/gltf_clips.hpp"
 

@@ -52,7 +52,7 @@ std::vector<glm::dmat4> joint_matrices(const tinygltf::Model& model, int number,
 
 void morph(const tinygltf::Model& model, const tinygltf::Node& node, const tinygltf::Primitive& primitive,
            const std::string& attribute, const std::string& place, std::span<glm::dvec3> vertices) {
-  if (primitive.targets.empty() || vertices.empty()) return;  // targets may have normals, but there are none to move
+  if (primitive.targets.empty() || vertices.empty()) return;  // targets may have normals that the mesh lacks
   const std::vector<double> weights = weights_of(model, node);
   for (std::size_t t = 0; t < std::min(weights.size(), primitive.targets.size()); ++t) {
     const auto target = primitive.targets[t].find(attribute);

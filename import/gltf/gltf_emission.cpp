@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance of an emissive primitive: its material's, times the mean of its picture over the triangles, each with its
-// area in the world. The search for the light's shape allows the rounding of positions in single precision.
+// Radiance of an emissive primitive: its material's, times the mean of its picture over the triangles, weighted by
+// their areas in the world. The search for the light's shape allows the rounding of positions in single precision.
 
 #include "import/gltf/gltf_emission.hpp"
 

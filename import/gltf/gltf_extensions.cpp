@@ -30,8 +30,8 @@ constexpr std::array<std::string_view, 12> kUnderstood{
     "KHR_texture_basisu",  // pictures that cannot be read are reported with their objects
 };
 
-/// Extensions that change no diffuse surface and no light. The core's materials are the default of
-/// KHR_materials_variants, and the finest level of MSFT_lod is the core's mesh.
+/// Extensions that change no diffuse surface and no light. Without KHR_materials_variants the file's default materials
+/// remain, and without MSFT_lod the mesh of the finest level.
 constexpr std::array<std::string_view, 36> kWithoutEffect{
     "AGI_articulations",
     "AGI_stk_metadata",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds lamps that an animation hides by a scale of 0. The nodes are placed once more as if nothing were scaled to 0;
-// an emissive mesh whose points lie on a line as shown, and not as placed then, is hidden.
+// Finds lamps that an animation hides by a scale of 0. The nodes are placed a second time, as if nothing were scaled to
+// 0. An emissive mesh is hidden if its points lie on one line as shown, but not in that second placement.
 
 #include "import/gltf/gltf_hidden.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Imports a glTF file as scene, or as mesh, at one time or several: parses it once, then poses its nodes and builds
-// what is shown for each time.
+// Imports a glTF file as a scene or as a mesh, at one time or several: parses it once, then for each time poses its
+// nodes and builds the scene.
 
 #include "import/gltf/gltf_import.hpp"
 
@@ -22,7 +22,7 @@
 namespace penumbra::import {
 namespace {
 
-/// Returns whether anything but nodes moves vertices.
+/// Returns whether skins or morph targets move vertices apart from their nodes.
 bool bends(const tinygltf::Model& model) {
   const auto morphs = [](const tinygltf::Mesh& mesh) {
     return std::ranges::any_of(mesh.primitives, [](const auto& primitive) { return !primitive.targets.empty(); });
@@ -30,8 +30,8 @@ bool bends(const tinygltf::Model& model) {
   return !model.skins.empty() || std::ranges::any_of(model.meshes, morphs);
 }
 
-/// Returns the time span of the played animations. A scene at rest does not show them, so that their faults are only
-/// warned of.
+/// Returns the time span of the played animations. A scene at rest does not show them, so that damaged animations then
+/// only cause a warning.
 std::optional<scenes::Motion> motion_for(const tinygltf::Model& model, const ClipChoice& clips,
                                          const scenes::ReadOptions& options, std::vector<std::string>& warnings) {
   if (options.time && !clips.others.empty()) {
@@ -68,9 +68,9 @@ class ParsedFile {
 
   [[nodiscard]] bool moves() const { return motion_.has_value(); }
 
-  /// Returns the scene at a time, or at rest; not at rest after a time.
+  /// Returns the scene at a time, or at rest. Must not be called for rest after a call with a time.
   scenes::Scene scene_at(std::optional<double> time) {
-    if (time) pose_model(model_, *time, clips_.played);  // places what moves, wherever it was before
+    if (time) pose_model(model_, *time, clips_.played);  // sets all animated nodes, wherever they were before
     const std::vector<std::size_t> played = time ? clips_.played : std::vector<std::size_t>();
     std::vector<std::optional<glm::dmat4>> unhidden;
     if (motion_) unhidden = unhidden_places(model_, scales_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXT_mesh_gpu_instancing: a node's mesh once for each element of its TRANSLATION, ROTATION and SCALE accessors,
-// instead of once at the node.
+// EXT_mesh_gpu_instancing: a node's mesh appears once for each element of the extension's TRANSLATION, ROTATION and
+// SCALE accessors, instead of once at the node.
 
 #include "import/gltf/gltf_instances.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses a glTF or GLB file with tinygltf, which may open files in the file's own folder and below alone. Before
-// tinygltf sees it, the JSON's integers are checked, its URIs settled (escaped or not), and what tinygltf misreads is
-// mended.
+// Parses a glTF or GLB file with tinygltf, which may open files only in the file's own folder and below. Before
+// tinygltf sees the JSON, its integers are checked, its URIs are resolved (escaped or not), and constructs that
+// tinygltf misreads are converted.
 
 #include "import/gltf/gltf_load.hpp"
 
@@ -151,8 +151,8 @@ void forgive_default_binds(std::string& error) {
     error.erase(at, kComplaint.size());
 }
 
-/// Finds out which file each URI with percent signs means: the decoded name, or the name as it stands if that file
-/// alone exists, since some exporters do not escape a "50%20.bin". Writes its URI so that tinygltf, which decodes a
+/// Determines which file each URI with percent signs means: the decoded name, or the name as it stands if only that
+/// file exists, since some exporters do not escape a "50%20.bin". Writes its URI so that tinygltf, which decodes a
 /// "100%.bin" to other letters, finds the file. Returns whether a URI changed.
 bool settle_names(nlohmann::json& document, Confinement& confinement) {
   bool changed = false;
@@ -188,7 +188,8 @@ void note_lengths(const nlohmann::json& document, Confinement& confinement) {
   }
 }
 
-/// Returns JSON with the escape \\xe9 in place of a byte that is not UTF-8, which as the text of a string is \xe9.
+/// Returns JSON in which the escape \\xe9 replaces a byte that is not UTF-8; in the parsed string this is the text
+/// \xe9.
 std::string with_escaped_bytes(std::string_view text) {
   std::string valid;
   valid.reserve(text.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Changes a file's JSON where tinygltf refuses or misreads what glTF 2.0, or its extensions, allow: targets of
+// Changes a file's JSON where tinygltf refuses or misreads constructs that glTF 2.0 or its extensions allow: targets of
 // KHR_animation_pointer, data URIs of other media types, Draco primitives with an uncompressed copy.
 
 #include "import/gltf/gltf_mend.hpp"
@@ -167,7 +167,7 @@ bool mend_uris(json& document, const std::string& file) {
   if (json* const images = array_of(document, "images")) {
     for (json& image : *images) {
       if (mend_uri(image, changed) != 0) continue;
-      // The URI is no picture that could be decoded; tinygltf would otherwise look for a file of this name.
+      // The data URI cannot be decoded as a picture; unreplaced, tinygltf would take it for the name of a file.
       image["uri"] = "data:application/octet-stream;base64,AAAA";
       changed = true;
     }
@@ -238,7 +238,8 @@ bool mend_draco(json& document, const std::string& file, bool lenient, TakenOut&
   return changed;
 }
 
-/// tinygltf reads a node's matrix if there is one, and its parts if not; so do three.js and Blender.
+/// Lists nodes with both a matrix and translation, rotation or scale. tinygltf reads the matrix if there is one, and
+/// else the other parts; so do three.js and Blender.
 void name_overruled(json& document, TakenOut& taken_out) {
   const json* const nodes = array_of(document, "nodes");
   for (std::size_t i = 0; nodes != nullptr && i < nodes->size(); ++i) {

@@ -20,20 +20,20 @@ struct TakenOut {
   std::vector<Pointer> pointers;          ///< each once
   std::size_t channels_without_node = 0;  ///< animation channels that glTF 2.0 (3.11) requires to ignore
   bool no_utf8 = false;                   ///< names had bytes that are not UTF-8, now escapes such as \xe9
-  std::vector<std::string> overruled;     ///< nodes with a matrix beside translation, rotation or scale
+  std::vector<std::string> overruled;     ///< nodes with a matrix and also translation, rotation or scale
   std::vector<std::string> compressed;    ///< primitives that exist only in compressed form; filled only if lenient
 };
 
 /// Converts constructs that glTF 2.0 or three.js allows and tinygltf refuses into equivalent ones:
 /// - animation channels without a node are removed; channels that point to a node's transform (KHR_animation_pointer)
 ///   get that node as their target;
-/// - a plus sign in a file's name stays one;
-/// - data URIs get a media type that tinygltf supports, without percent escapes or blanks within their base64, and
-/// buffers
-///   the length of their data URI, which may be longer than `byteLength`;
+/// - a plus sign in a file's name stays a plus sign;
+/// - data URIs get a media type that tinygltf supports, and lose percent escapes and blanks within their base64;
+///   buffers get the length of their data URI, which may be longer than `byteLength`;
 /// - primitives compressed with Draco that have an uncompressed copy use the copy; those without are refused
 ///   (InputError with the primitive's place), or removed if `lenient`;
-/// - of a node with a matrix and translation, rotation or scale, which are exclusive (3.5.3), the matrix counts.
+/// - if a node has both a matrix and translation, rotation or scale, which exclude each other (3.5.3), the matrix is
+///   used.
 /// Refuses files of which no part can be read without their compression (EXT_meshopt_compression). Returns whether the
 /// document changed. `file` is its name, for messages.
 bool mend_gltf(nlohmann::json& document, const std::string& file, bool lenient, TakenOut& taken_out);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks each integer of a file by its JSON pointer before tinygltf, which would take 2³² + 1 as 1, and a fraction as
-// its whole part, sees the file.
+// Checks each integer of a file by its JSON pointer before tinygltf reads the file: tinygltf would take 2³² + 1 as 1,
+// and a fraction as its integer part.
 
 #include "import/gltf/gltf_numbers.hpp"
 

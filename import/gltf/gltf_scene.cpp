@@ -41,7 +41,7 @@ namespace penumbra::import {
 namespace {
 
 /// Returns whether a diffuse picture may change with the property at this JSON pointer. Metalness, gloss and relief of
-/// materials do not matter, nor clipping distances of cameras.
+/// materials do not matter, nor do clipping distances of cameras.
 bool changes_light(std::string_view pointer) {
   constexpr std::array<std::string_view, 12> kOthers{"metallicFactor",
                                                      "roughnessFactor",
@@ -329,7 +329,7 @@ class GltfScene {
     const bool lets_through = look.alpha.mode != Mode::opaque;
     const bool evenly = look.alpha.mode == Mode::blend && !look.picture && look.colors.empty();
     const glm::dvec3 radiance = (pictured ? radiance_of(vertices, triangles, means_) : look.radiance) *
-                                (evenly ? look.alpha.factor : 1.0);  // what a pane covers shines
+                                (evenly ? look.alpha.factor : 1.0);  // emission scales with coverage
     if (pictured && radiance != glm::dvec3(0))
       losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
     else if (pictured)

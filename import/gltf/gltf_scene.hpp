@@ -24,7 +24,7 @@ namespace penumbra::import {
 enum class Purpose : std::uint8_t { lit_scene, any_scene, mesh, rest };
 
 struct SceneRequest {
-  const std::string& name;  ///< the scene's
+  const std::string& name;  ///< the scene's name
   const scenes::ReadOptions& options;
   std::span<const std::optional<glm::dmat4>> unhidden = {};  ///< see unhidden_places; empty if nothing moves
   std::span<const std::size_t> played = {};                  ///< indices of the animations that move the scene

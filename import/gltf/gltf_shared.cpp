@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a primitive that several nodes show once, as instances. Not shared are primitives with a skin, with morph
-// targets, or that emit light: each of these is its own geometry, or its own light.
+// Stores a primitive only once if several nodes show it, with an instance for each node. Primitives with a skin or
+// morph targets, or that emit light, are not shared: each occurrence is a separate geometry, or a separate light.
 
 #include "import/gltf/gltf_shared.hpp"
 

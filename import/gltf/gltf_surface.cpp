@@ -59,8 +59,8 @@ struct BaseColor {
 
 constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
-/// Returns the core's base colour; for a material of KHR_materials_pbrSpecularGlossiness, frequent in files before
-/// 2021, its diffuse colour, which replaces the base colour.
+/// Returns the base colour; for a material of KHR_materials_pbrSpecularGlossiness, frequent in files before 2021, its
+/// diffuse colour, which replaces the base colour.
 BaseColor base_color_of(const tinygltf::Material& material) {
   const auto found = material.extensions.find(kSpecularGlossiness);
   if (found == material.extensions.end()) {

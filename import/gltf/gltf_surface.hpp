@@ -88,7 +88,7 @@ class SurfaceReader {
   std::optional<std::uint32_t> lightmap_;
   std::map<int, std::optional<std::uint32_t>> known_;  // index of each image's picture
   std::map<int, std::string> unreadable_;
-  std::map<std::uint32_t, AlphaRange> ranges_;  // for each picture: thousands of leaves share one
+  std::map<std::uint32_t, AlphaRange> ranges_;  // for each picture; kept, because thousands of leaves share one
 };
 
 }  // namespace penumbra::import

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places the triangles of a primitive in the world, with the vertices that they use alone. Corners are swapped where
-// the transform mirrors (glTF 2.0, 3.7.4).
+// Places the triangles of a primitive in the world, with only the vertices that they use. Corners are swapped where the
+// transform mirrors (glTF 2.0, 3.7.4).
 
 #include "import/gltf/gltf_triangles.hpp"
 

@@ -54,7 +54,7 @@ scenes::SharedMesh shared_mesh(const PrimitiveVertices& vertices, std::vector<me
 /// Removes everything added since `end`.
 void shorten(scenes::Scene& scene, const SoupEnd& end);
 
-/// Gives the vertices after the last one with an appearance a default one.
+/// Gives a default appearance to all vertices after the last one that has an appearance.
 void complete_looks(scenes::Scene& scene);
 
 }  // namespace penumbra::import

@@ -19,7 +19,7 @@ struct CompareOptions {
   std::string reference = "raytrace";
   std::string reference_samples = "1024";  ///< light samples of the reference, or same
   std::uint32_t width = 0, height = 0;     ///< in pixels; 0: the scene's size
-  std::uint32_t light_samples = 256;       ///< of methods with light samples
+  std::uint32_t light_samples = 256;       ///< for methods that use light samples
   std::string sample_pattern = {};         ///< rows (default), grid, sobol, jittered or rgss
   std::vector<std::string> lights = {};    ///< only these lights; empty: all
   std::string camera = {};

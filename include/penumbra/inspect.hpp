@@ -20,8 +20,8 @@ struct InspectOptions {
 };
 
 /// Returns the defects of a mesh, and each method's verdict on the mesh: the JSON of `penumbra inspect --json`. Throws
-/// InputError for a file that cannot be read, or arrays that are not a mesh (Scene::add_mesh), and Cancelled. Of `host`
-/// only the log and progress functions are used.
+/// InputError for a file that cannot be read, or arrays that are not a mesh (Scene::add_mesh), and Cancelled. Uses only
+/// the log and progress functions of `host`.
 PENUMBRA_API std::string inspect_json(const std::filesystem::path& file, const InspectOptions& options = {},
                                       const RendererOptions& host = {});
 PENUMBRA_API std::string inspect_json(std::span<const Vector> positions,

@@ -12,7 +12,7 @@ struct MethodOption {
   std::string name, default_value, help;
   std::vector<std::string> choices;  ///< empty: a number from `least` to `most`
   double least = 0, most = 0;
-  bool whole = false;  ///< for a number: without a fraction
+  bool whole = false;  ///< for a number: only integers are allowed
 };
 
 /// Shadow method, as listed by `penumbra methods`.
@@ -24,7 +24,7 @@ struct MethodInfo {
   std::vector<MethodOption> options;
 };
 
-/// Returns all methods, in each family the best first.
+/// Returns all methods, sorted from best to worst within each family.
 PENUMBRA_API std::vector<MethodInfo> methods();
 /// Returns the JSON of `penumbra methods --json`.
 PENUMBRA_API std::string methods_json();

@@ -15,21 +15,21 @@
 #include <string>
 #include <vector>
 
-/// Shadow methods of the calling program: once added, these are named, rendered and compared as any other.
+/// Shadow methods of the calling program. Once added, they are selected by name, rendered and compared like all others.
 namespace penumbra {
 
 using Float3 = std::array<float, 3>;  ///< x, y, z
 
-/// Triangles, in the numbers from which every method decides visibility: float32 of (world − origin). Spans are valid
-/// until the method is given another scene.
+/// Triangles, in the coordinates with which every method decides visibility: float32 of (world − origin). Spans are
+/// valid until the method is given another scene.
 struct MethodScene {
   std::array<double, 3> origin{};
   std::span<const Float3> positions;
-  /// Three indices each, in the order of Picture::ids. The three are ordered by position, not as in the file: they do
-  /// not determine the front side.
+  /// Three vertex indices for each triangle, in the order of Picture::ids. The three are sorted by position, not as in
+  /// the file, so that their order does not show the front side.
   std::span<const std::array<std::uint32_t, 3>> triangles;
-  /// For each triangle, 0: the triangle casts no shadow of this light (it has no area, its mesh casts none, or is
-  /// transparent to this light).
+  /// For each triangle: 0 if it casts no shadow of this light (it has no area, its mesh casts no shadows, or its mesh
+  /// is transparent to this light).
   std::span<const std::uint8_t> casts;
   Float3 lower{}, upper{};  ///< bounding box of the positions
 };
@@ -82,18 +82,18 @@ class PENUMBRA_API OwnMethod {
   virtual void set_view(const MethodView& view) = 0;
 
   /// Called if OwnMethodInfo::masks is false: writes V, from 0 to 1, of each pixel. `pixels`: indices into the view's
-  /// spans, of surfaces that receive shadow of this light; V of the others follows from the definition. NaN or a number
+  /// spans of the pixels whose surfaces receive shadows of this light; no other pixel needs the method. NaN or a number
   /// out of range fails the call.
   virtual void visibility(std::span<const std::uint32_t> pixels, std::span<float> visibility);
-  /// Called if OwnMethodInfo::masks is true: sets bit j mod 32 of word j / 32, of words_per_mask words a pixel
-  /// initialised to 0, if light sample j is visible.
+  /// Called if OwnMethodInfo::masks is true: sets bit j mod 32 of word j / 32 if light sample j is visible. `masks` has
+  /// words_per_mask words for each of `pixels`, initialised to 0.
   virtual void masks(std::span<const std::uint32_t> pixels, std::span<std::uint32_t> masks);
 };
 
 /// Description of a method of the calling program.
 struct OwnMethodInfo {
   std::string name;              ///< letters, digits, - and _
-  std::string family = "image";  ///< or geometry: the group of the method in comparisons
+  std::string family = "image";  ///< image or geometry: the method's group in comparisons
   std::string paper = {};        ///< publication of the method
   std::string exact_for = "nothing";
   bool masks = false;  ///< computes one bit for each light sample, not V alone
@@ -107,11 +107,11 @@ struct OwnMethodInfo {
 /// Makes a method with the given values of all its options; options not set by the user have their default.
 using MakeOwnMethod = std::function<std::unique_ptr<OwnMethod>(const std::map<std::string, std::string>& options)>;
 
-/// Adds a method to those of this process, for the process's lifetime: methods() lists it, Renderer::render() and
-/// compare_json() accept its name, and comparisons of its family (`image`, `geometry`, `all`) include it; it is never
-/// the default of a light. `make` is called for each renderer and entry, by any thread. Throws UsageError for a name
-/// that is taken or malformed, an unknown kind of light or family, or an option with an invalid default. Thread-safe:
-/// methods may be added while other threads render.
+/// Adds a method for the lifetime of the process: methods() lists it, Renderer::render() and compare_json() accept its
+/// name, and comparisons of its family (`image`, `geometry`, `all`) include it; it is never the default of a light.
+/// `make` is called for each renderer and entry, by any thread. Throws UsageError for a name that is taken or
+/// malformed, an unknown kind of light or family, or an option with an invalid default. Thread-safe: methods may be
+/// added while other threads render.
 PENUMBRA_API void add_method(const OwnMethodInfo& info, MakeOwnMethod make);
 
 }  // namespace penumbra

@@ -2,7 +2,7 @@
 #pragma once
 
 /// Penumbra computes the visible fraction of an area light at each visible point. Contents of the library:
-///   scene.hpp     meshes, lights, cameras      renderer.hpp  pictures by any method, kept from call to call
+///   scene.hpp     meshes, lights, cameras      renderer.hpp  pictures by any method; keeps data between calls
 ///   picture.hpp   the numbers of a picture     methods.hpp   list of methods
 ///   compare.hpp   methods against a reference  inspect.hpp   defects of a mesh
 ///   wedges.hpp    penumbra wedges              own_method.hpp  methods of the calling program

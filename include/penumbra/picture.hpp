@@ -29,7 +29,7 @@ class PENUMBRA_API Picture {
   /// Returns visibility V of a light, 0 to 1 (channel V of the first light): the visible fraction of the light's area,
   /// weighted by a texture's luminance; 1 in the background.
   [[nodiscard]] std::span<const float> visibility(std::size_t light = 0) const;
-  /// Return linear red, green, blue of all lights together (R G B), or of one.
+  /// Return linear red, green, blue of all lights together (R G B), or of one light.
   [[nodiscard]] std::span<const Float3> beauty() const;
   [[nodiscard]] std::span<const Float3> beauty(std::size_t light) const;
   /// Returns coverage: 1 where the pixel shows a surface, 0 in the background (A).

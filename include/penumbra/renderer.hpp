@@ -25,8 +25,8 @@ struct RendererOptions {
   /// Receives each message of a call, on the calling thread. Empty: messages are dropped.
   std::function<void(LogLevel, std::string_view)> log = {};
   /// Receives the name of the stage and its completed fraction, on the calling thread, several times a second; less
-  /// often where a method evaluates many view samples at once (several a pixel, timed methods of comparisons). The call
-  /// ends with Cancelled if this function returns false.
+  /// often where a method evaluates many view samples at once (with several view samples a pixel, and for timed methods
+  /// of comparisons). The call ends with Cancelled if this function returns false.
   std::function<bool(std::string_view stage, double done)> progress = {};
 };
 
@@ -47,14 +47,14 @@ struct RenderOptions {
   /// For exact areas with several view samples a pixel: V is interpolated between neighbouring pixels where the
   /// estimated error is at most this; 0: every view sample is evaluated.
   double pixel_tolerance = 1.0 / 512;
-  /// A light is left out of view samples where, with nothing in between, it would be at most this share of all lights
-  /// together, in each of red, green and blue; its V is 0 there. 0: no light is left out.
+  /// A light is left out of view samples where, without any occluder, its light would be at most this share of that of
+  /// all lights together, in each of red, green and blue; its V is 0 there. 0: no light is left out.
   double light_cutoff = 0;
   bool shading_normals = true;  ///< for the beauty: use vertices' normals where present
   bool masks = true;            ///< keep Picture::masks of methods with masks
-  /// How instances are rendered: copies, shared (without copies), or auto, also if empty: shared if copies would exceed
-  /// 500000 triangles, and the method's answers do not depend on more than lies between a view sample and the light.
-  /// All give the same numbers.
+  /// How instances are rendered: "copies", "shared" (without copies), or "auto" (also if empty): shared if copies would
+  /// exceed 500000 triangles and the method depends only on what lies between a view sample and the light. All three
+  /// give the same numbers.
   std::string instances = {};
 };
 
@@ -70,8 +70,8 @@ class PENUMBRA_API Cancelled : public Error {
 /// Renders pictures of one scene, and keeps unchanged data from call to call. Hierarchies over a mesh are kept until it
 /// moves, and are then refitted; trees over meshes with instances are kept also when instances move. View samples are
 /// kept while camera, size and meshes are unchanged, the Vulkan device always. Renderers on different threads are
-/// independent; one renderer is for one thread at a time. A call that throws leaves the renderer usable. One that was
-/// moved from can only be destroyed or assigned to.
+/// independent; one renderer is for one thread at a time. A call that throws leaves the renderer usable. A renderer
+/// that was moved from can only be destroyed or assigned to.
 class PENUMBRA_API Renderer {
  public:
   explicit Renderer(Scene scene, RendererOptions options = {});
@@ -84,7 +84,7 @@ class PENUMBRA_API Renderer {
   [[nodiscard]] const Scene& scene() const;
 
   /// Renders the scene and returns the same numbers as written by `penumbra render`. Throws UsageError for invalid
-  /// options, InputError for a scene that cannot be rendered, or not by this method, ResourceError, Cancelled.
+  /// options, InputError for a scene that cannot be rendered at all or by this method, ResourceError, and Cancelled.
   Picture render(const RenderOptions& options = {});
 
  private:

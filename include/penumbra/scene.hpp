@@ -23,7 +23,7 @@ using Vector = std::array<double, 3>;
 /// 4x4 matrix by rows, for column vectors: elements 3, 7 and 11 are the translation.
 using Matrix = std::array<double, 16>;
 
-/// The points center + s·half_u + t·half_v with |s|, |t| <= 1; emits to the side half_u × half_v points to.
+/// The points center + s·half_u + t·half_v with |s|, |t| <= 1; emits to the side to which half_u × half_v points.
 struct Rectangle {
   Vector center{}, half_u{}, half_v{};
 };
@@ -32,7 +32,7 @@ struct Disk {
   Vector center{}, normal{0, -1, 0};
   double radius = 0;
 };
-/// The points center + s·half_u + t·half_v with s² + t² <= 1; emits to the side half_u × half_v points to.
+/// The points center + s·half_u + t·half_v with s² + t² <= 1; emits to the side to which half_u × half_v points.
 struct Ellipse {
   Vector center{}, half_u{}, half_v{};
 };
@@ -50,14 +50,14 @@ struct Sun {
   Vector direction{0, -1, 0};
   double angle = 0.53;
 };
-/// Sky: all directions, or with `half` those with a positive component along `up`, of uniform radiance or multiplied by
-/// a latitude-longitude picture.
+/// Sky: light from all directions, or if `half`, from those with a positive component along `up`. Its radiance is
+/// uniform, or multiplied by a latitude-longitude picture.
 struct Dome {
   Vector up{0, 1, 0};
   double rotate = 0;  ///< degrees about `up`: direction of the picture's middle column, by default -z
   bool half = false;
   std::filesystem::path image = {};  ///< Radiance (.hdr), OpenEXR or PNG; empty: uniform radiance
-  bool sampled = false;              ///< counted in light samples by default, instead of exact areas: quicker
+  bool sampled = false;              ///< uses light samples by default instead of exact areas: faster
 };
 using LightShape = std::variant<Rectangle, Disk, Ellipse, Polygon, Sphere, Sun, Dome>;
 
@@ -72,8 +72,8 @@ struct Camera {
   double vertical_fov = 45;           ///< degrees
   std::optional<double> height = {};  ///< of an orthographic camera: the picture's height, in place of an angle
   std::string name = "camera";
-  /// Radius of a thin lens: surfaces away from the focus distance along the view axis are blurred, at several view
-  /// samples a pixel. 0: everything is sharp.
+  /// Radius of a thin lens: surfaces away from the focus distance along the view axis are blurred if a pixel has
+  /// several view samples. 0: everything is sharp.
   double aperture = 0;
   double focus_distance = 0;  ///< must be above 0 if there is an aperture
 };
@@ -83,7 +83,7 @@ struct MeshOptions {
   bool casts_shadow = true, receives_shadow = true;
 };
 
-/// Vertices and triangles of an entry of "meshes" of a scene file's text, in place of the source that the text names.
+/// Vertices and triangles for an entry of "meshes" in a scene file's text; they replace the source that the text names.
 /// The entry's "transform", "fit" or "instances" apply to them.
 struct MeshArrays {
   std::uint32_t mesh = 0;  ///< index in "meshes"
@@ -103,7 +103,7 @@ struct LoadOptions {
   /// For parse(): vertices and triangles of entries of "meshes".
   std::span<const MeshArrays> arrays = {};
   /// Progress of reading: before each mesh of a JSON scene, and ten times a second while another process reads a file.
-  /// False, or an exception, ends the reading (RendererOptions::progress).
+  /// Reading ends if this function returns false or throws (RendererOptions::progress).
   std::function<bool(std::string_view stage, double done)> progress = {};
 };
 
@@ -121,8 +121,8 @@ struct InstanceId {
 };
 
 /// Triangles, area lights and cameras. Value type: copies are independent of each other. A call that throws leaves the
-/// scene unchanged. A scene that was moved from is as new. Scenes on different threads are independent; one scene is
-/// for one thread at a time.
+/// scene unchanged. A scene that was moved from is like a new one. Scenes on different threads are independent; one
+/// scene is for one thread at a time.
 class PENUMBRA_API Scene {
  public:
   /// Makes a scene without meshes, lights and cameras.
@@ -149,15 +149,16 @@ class PENUMBRA_API Scene {
   /// colours and pictures are removed. Throws as add_mesh().
   void set_mesh(MeshId mesh, std::span<const Vector> positions,
                 std::span<const std::array<std::uint32_t, 3>> triangles);
-  /// Adds an instance of a mesh, which is stored once. From its first instance on, a mesh stands only where its
-  /// instances are: its vertices, as they are then, are in the mesh's own space, and `matrix` takes them to the world.
-  /// set_mesh() and set_positions() change all of its instances, and set_transform() of the mesh moves them all.
+  /// Adds an instance of a mesh, whose vertices are stored once. As soon as a mesh has an instance, it appears only
+  /// where its instances are: its vertices at that time become coordinates in the mesh's own space, which `matrix`
+  /// transforms to the world. set_mesh() and set_positions() change all of its instances, and set_transform() of the
+  /// mesh moves them all.
   ///
   /// Files have instances, too: JSON's "instances", EXT_mesh_gpu_instancing, and nodes of a glTF file that share a
-  /// mesh. set_mesh() and set_positions() of such a node replace its instances by a mesh of its own: it has no
-  /// instances then, and set_positions() takes the world positions of all their vertices. Throws as set_transform().
+  /// mesh. set_mesh() and set_positions() of such a node replace its instances by a separate mesh without instances;
+  /// set_positions() then takes the world positions of the vertices of all these instances. Throws as set_transform().
   InstanceId add_instance(MeshId mesh, const Matrix& matrix);
-  /// Moves an instance: replaces its matrix. Throws as for a mesh.
+  /// Moves an instance: replaces its matrix. Throws as set_transform() of a mesh.
   void set_transform(InstanceId instance, const Matrix& matrix);
   /// Returns the number of a mesh's instances; 0: the mesh itself is in the scene.
   [[nodiscard]] std::size_t instance_count(MeshId mesh) const;
@@ -169,7 +170,7 @@ class PENUMBRA_API Scene {
   /// mesh that the scene does not have, InputError for a matrix that is not finite or whose last row is not 0 0 0 1,
   /// and for a mesh that is the body of a light.
   void set_transform(MeshId mesh, const Matrix& matrix);
-  /// Replaces the positions with which a mesh was added or read, in the same number, and resets its transform. Throws
+  /// Replaces the positions with which a mesh was added or read by as many new ones, and resets its transform. Throws
   /// as add_mesh(), and for a mesh that is the body of a light.
   void set_positions(MeshId mesh, std::span<const Vector> positions);
 

@@ -15,7 +15,8 @@ struct WedgeOptions {
   std::string construction = "original";  ///< original, tight, or one with a deliberate fault, broken:1 to broken:6
   std::string from = "centre";            ///< silhouettes from the light's centre, or from anywhere on the light
   bool validate = false;                  ///< prove every invariant by exact signs
-  /// Called between the steps of the work; false, or an exception, ends the work (RendererOptions::progress).
+  /// Called between the steps of the work, which ends if this function returns false or throws
+  /// (RendererOptions::progress).
   std::function<bool(std::string_view stage, double done)> progress = {};
 };
 

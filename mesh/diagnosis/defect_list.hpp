@@ -18,7 +18,8 @@ class DefectList {
  public:
   explicit DefectList(std::size_t limit) : limit_(limit) {}
 
-  /// Adds `more` defects to the count, all of which come after `limit` of those that are added.
+  /// Adds `more` defects to the count only. The list must be full without them: at least `limit` added defects come
+  /// before all of them.
   void count(std::uint64_t more) { count_ += more; }
 
   /// Returns whether a defect whose first triangle is `first_triangle` could be among the kept ones.

@@ -54,7 +54,7 @@ void diagnose_shapes(const MeshView& mesh, const EdgeGraph& graph, std::size_t l
   diagnosis.needles = std::move(needles).finish(mesh);
 }
 
-/// Sums in the order of the triangles, so that the result is reproducible.
+/// Returns the volume, summed in the order of the triangles, so that the result is reproducible.
 double signed_volume(const MeshView& mesh, const EdgeGraph& graph, const glm::dvec3& centre) {
   double six_times = 0;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

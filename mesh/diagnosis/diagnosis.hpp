@@ -41,11 +41,11 @@ struct Diagnosis {
   std::uint64_t components = 0;  ///< sets of triangles connected through shared edges; a triangle that repeats a vertex
                                  ///< has no edges and belongs to none
 
-  /// Watertight by winding: once neighbours across edges of two triangles are turned to agree (see turns_to_agree in
-  /// mesh/diagnosis/winding.hpp), the winding number is an integer at every point of space. That is: the signed
-  /// boundary is exactly zero *as a set of points with multiplicity*, regardless of where its edges are split (so a
-  /// boundary that is closed by another component's edges, or across T-junctions, is closed), and a sheet that is
-  /// merely doubled is not closed.
+  /// Watertight by winding: after neighbours across edges of two triangles have been turned to agree (see
+  /// turns_to_agree in mesh/diagnosis/winding.hpp), the winding number is an integer at every point of space. That is:
+  /// the signed boundary is exactly zero *as a set of points with multiplicity*, regardless of where its edges are
+  /// split (so a boundary that is closed by another component's edges, or across T-junctions, is closed), and a sheet
+  /// that is merely doubled is not closed.
   bool closed = false;
   /// Closed with the stored windings, no triangle turned.
   bool closed_as_wound = false;

@@ -12,7 +12,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Returns the indices (3 t + i) of the corners where a triangle's edge begins and ends: at the edge's a, at its b.
+/// Returns the indices (3 t + i) of the two corners of a triangle at the ends a and b of one of its edges.
 std::array<std::uint32_t, 2> corners_at_ends(const EdgeGraph& graph, std::uint32_t edge, const Incidence& incidence) {
   const std::uint32_t t = incidence.triangle;
   std::uint32_t i = 0;
@@ -125,7 +125,7 @@ void diagnose_duplicates(const MeshView& mesh, const EdgeGraph& graph, std::size
     std::ranges::stable_sort(faces, {}, &Incidence::apex);
     for (auto begin = faces.begin(); begin != faces.end();) {
       const auto end = std::find_if(begin, faces.end(), [&](const auto& i) { return i.apex != begin->apex; });
-      std::array<std::vector<std::uint32_t>, 2> wound;  // triangles of either winding
+      std::array<std::vector<std::uint32_t>, 2> wound;  // the triangles of each winding
       for (auto face = begin; face != end; ++face) wound[face->reversed ? 1 : 0].push_back(face->triangle);
       for (const auto& same : wound) {
         for (std::size_t i = 1; i < same.size(); ++i) duplicate.add({same[0], same[i]}, {a, b, begin->apex});

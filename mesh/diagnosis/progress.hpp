@@ -8,7 +8,7 @@
 
 namespace penumbra::mesh {
 
-/// A range [begin, end] of the progress that a caller is told; values rise, and calls do not overlap.
+/// A range [begin, end] of the progress reported to a caller; values rise, and calls do not overlap.
 class Progress {
  public:
   Progress(const std::function<void(double)>& report, double begin, double end)

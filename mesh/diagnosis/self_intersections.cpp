@@ -2,12 +2,13 @@
 // Self-intersections of a soup, exact. The cases by shared vertices are those of CGAL's polygon mesh processing,
 // self_intersections(); the predicates come from CGAL's kernel (LGPL).
 //
-// Whether two triangles meet depends on their vertices alone. So triangles with the same three vertices are searched as
+// Whether two triangles meet depends only on their vertices. So triangles with the same three vertices are searched as
 // one surface, and each result counts for all of them: n triangles in one place cost n log n, not n².
 //
 // All triangles at one vertex have boxes that overlap there: a fan of n would cost n². Two triangles with a common
-// vertex meet elsewhere exactly if some ray from that vertex goes into both. So triangles at a vertex of many, a hub,
-// are searched by the directions in which they lie, and the search by boxes skips pairs that have a hub in common.
+// vertex meet elsewhere exactly if some ray from that vertex goes into both. So triangles at a hub, a vertex of many
+// triangles, are searched by the directions in which they lie, and the search by boxes skips pairs that have a hub in
+// common.
 
 #include "mesh/diagnosis/self_intersections.hpp"
 
@@ -37,7 +38,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 
-/// Tests whether two triangles meet that have at most two vertices in common.
+/// Tests whether two triangles with at most two common vertices meet.
 class PairTest {
  public:
   PairTest(const MeshView& mesh, const EdgeGraph& graph) : mesh_(mesh), graph_(graph) {}
@@ -130,7 +131,7 @@ class PairList {
   void add(Copies a, Copies b) {
     const std::uint64_t all = std::uint64_t{a.size()} * b.size();
     std::size_t listed = 0;
-    while (listed < limit_ && !a.empty() && !b.empty()) {  // in list order, as many as the whole list can take
+    while (listed < limit_ && !a.empty() && !b.empty()) {  // in list order, until the list is full
       if (a.front() > b.front()) std::swap(a, b);
       listed += add_first(a.front(), b.first(std::min(b.size(), limit_ - listed)));
       a = a.subspan(1);
@@ -231,8 +232,8 @@ class Hubs {
  private:
   static std::uint32_t first(const Few& hubs) { return std::ranges::min(hubs); }
 
-  /// Returns a box around the unit vectors from the hub into the triangle: these are an arc between two unit vectors,
-  /// which is no farther from its chord c than 1 − √(1 − c²/4) ≤ c²/4. Rounding is far below 2⁻⁴⁰.
+  /// Returns a box around the unit vectors from the hub into the triangle: these form an arc between two unit vectors,
+  /// which is no farther from its chord, of length c, than 1 − √(1 − c²/4) ≤ c²/4. Rounding is far below 2⁻⁴⁰.
   [[nodiscard]] Box directions(const Triangle& corners, std::uint32_t hub) const {
     std::array<glm::dvec3, 2> ends;
     std::size_t count = 0;

@@ -2,9 +2,9 @@
 // T-junctions: vertices exactly inside edges. Candidates come from a tree over the vertices, which each edge traverses
 // as a segment (a long diagonal edge has a large box, but passes few vertices); the verdict is exact. The traversal
 // errs only toward more candidates.
-// Many vertices on one line with many edges on it would give a quadratic number of pairs: the vertices on the line of a
-// crowded edge are found and sorted once, and every other edge on that line counts those between its ends by two binary
-// searches.
+// Many vertices on one line with many edges on it would give a quadratic number of pairs. Therefore the vertices on the
+// line of a crowded edge are found and sorted once, and every other edge on that line counts those between its ends by
+// two binary searches.
 
 #include "mesh/diagnosis/t_junctions.hpp"
 
@@ -157,7 +157,8 @@ class Search {
     for (const std::uint32_t v : inside) found_.local().add(triangles, std::array{v, a, b});
   }
 
-  /// Adds edges by their first triangles, so that the list is full soon and the remaining ones are only counted.
+  /// Adds edges in the order of their first triangles, so that the list is full soon and the remaining edges are only
+  /// counted.
   void add_crowded(DefectList& all) {
     Numbers edges;
     for (const Numbers& some : crowded_) edges.insert(edges.end(), some.begin(), some.end());

@@ -47,8 +47,7 @@ Ends boundary_ends(const EdgeGraph& graph, const std::vector<bool>& turned) {
   for_each_index(sums.size(),
                  [&](std::size_t edge) { sums[edge] = signed_sum(graph, static_cast<std::uint32_t>(edge), turned); });
   Ends all;
-  all.first.resize(graph.vertex.size() + 2);  // counted two places on, so that after filling each entry is its group's
-                                              // begin
+  all.first.resize(graph.vertex.size() + 2);  // offset by two, so that after filling each entry is its group's begin
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i] != 0) ++all.first[graph.edges[i].a + 2], ++all.first[graph.edges[i].b + 2];
   }
@@ -121,7 +120,8 @@ Patch grow_patch(const EdgeGraph& graph, std::uint32_t seed, std::vector<bool>& 
   return patch;
 }
 
-/// Returns whether most triangles of the patch are turned; or exactly half, among them the first one in space.
+/// Returns whether more than half of the patch's triangles are turned, or exactly half of them including the one whose
+/// sorted corners come first.
 bool should_turn_back(const MeshView& mesh, const EdgeGraph& graph, const Patch& patch,
                       const std::vector<bool>& turned) {
   const auto count =

@@ -72,8 +72,8 @@ Known know_doubled_box(Count s) {
   return known;
 }
 
-/// Builds a square ring of 2 s cells a side between its corners, lying flat except on its first side, where it turns
-/// upright and further, upside down.
+/// Builds a square ring with 2 s cells on each side between its corners. It lies flat except on its first side, where
+/// it turns upright and then upside down.
 void build_moebius(LatticeMesh& mesh, int s) {
   const int near = kCell, far = (2 * s + 1) * kCell, out = (2 * s + 2) * kCell, half = kCell / 2;
   using Rung = std::pair<glm::ivec3, glm::ivec3>;  // from inside to outside; after the turn, from outside to inside
@@ -103,7 +103,8 @@ void build_moebius(LatticeMesh& mesh, int s) {
     if (p != next_p) mesh.add(p, next_q, next_p);
   }
 }
-/// 2 · 2 s triangles a side and 2 a corner; each has one side on the rim, which visits every vertex once.
+/// There are 2 · 2 s triangles on each side and 2 at each corner. Each triangle has one side on the rim, which visits
+/// every vertex once.
 Known know_moebius(Count s) {
   Known known;
   open(known);
@@ -139,7 +140,7 @@ Known know_inner_wall(Count s) {
   return known;
 }
 
-/// Builds two boxes with a side in common, which exists twice, once for each box.
+/// Builds two boxes with a common side, which exists twice, once for each box.
 void build_shared_wall(LatticeMesh& mesh, int s) {
   box(mesh, s);
   box(mesh, s, s * kX);
@@ -176,8 +177,8 @@ Known know_bowtie_sheets(Count s) {
 }
 
 /// Builds a flat sheet, and an upright one that crosses its first column of cells in the middle: along the line both
-/// are cut into pieces, the first at j and j + 1/2, the second, which starts at 1/8 and is crossed at a quarter of a
-/// cell's height, at j + 1/8 and j + 3/8.
+/// are cut into pieces. The first is cut at j and j + 1/2. The second starts at 1/8 and is crossed at a quarter of a
+/// cell's height, so it is cut at j + 1/8 and j + 3/8.
 void build_crossing_sheets(LatticeMesh& mesh, int s) {
   const int height = s / 2 * kCell + kCell / 4;
   mesh.add_sheet({{0, height, 0}, kZ, kX, s, s});
@@ -249,8 +250,8 @@ void build_decals(LatticeMesh& mesh, int s) {
 }
 
 /// Builds two sheets on a plane: the last cell of the first and the first cell of the second overlap. The second is
-/// shifted half a cell along the row, a quarter across: of the four pairs of triangles, abc of the second and acd of
-/// the first, which the diagonals keep apart, do not meet.
+/// shifted half a cell along the row, a quarter across: of the four pairs of triangles, only abc of the second and acd
+/// of the first do not meet, since the diagonals keep them apart.
 void build_overlap(LatticeMesh& mesh, int s) {
   build_sheet(mesh, s);
   mesh.add_sheet({(s - 1) * (kX + kY) + kX / 2 + kY / 4, kX, kY, s, s});

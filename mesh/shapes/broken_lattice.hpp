@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-/// Internal to this room: the parts of broken meshes, on a lattice of integers.
+/// Internal to this folder: the parts of broken meshes, on a lattice of integers.
 namespace penumbra::mesh::broken {
 
 inline constexpr int kCell = 2048;  ///< lattice steps along a cell: a needle one step high is below kNeedle
@@ -55,7 +55,7 @@ class LatticeMesh {
 
   /// Starts a new stretch: later triangles share no position with earlier ones.
   void apart() { numbers_.clear(); }
-  /// Later triangles are placed the smallest step above their lattice place.
+  /// Places all later triangles above their lattice place, by the smallest step of the kind `how`.
   void lift_from_here(Lift how);
   /// Gives every triangle its own positions.
   void separate();
@@ -108,7 +108,7 @@ struct Defect {
 };
 
 std::span<const Defect> surface_defects();  ///< defects in the surface of a closed box
-std::span<const Defect> sheet_defects();    ///< defects of open and doubled sheets, and of vertices as numbers
+std::span<const Defect> sheet_defects();    ///< defects of open and doubled sheets and boxes, and of loose triangles
 std::span<const Defect> joint_defects();    ///< defects of several parts that touch, overlap or cross
 
 }  // namespace penumbra::mesh::broken

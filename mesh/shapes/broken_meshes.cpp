@@ -36,7 +36,7 @@ class Placement {
 
   [[nodiscard]] glm::dvec3 of(const glm::dvec3& place) const { return center_ + step_ * (place - middle_); }
 
-  /// Returns a step that is representable next to every coordinate of the whole.
+  /// Returns a step that is representable next to every coordinate of the whole mesh.
   [[nodiscard]] double smallest_step(Lift lift) const {
     if (lift == Lift::none) return 0;
     return std::exp2(std::ilogb(far_) - (lift == Lift::float_step ? 23 : 52));
@@ -68,7 +68,7 @@ const broken::Defect& find_defect(std::string_view name) {
   throw InputError("there is no defect \"{}\"; there are {}", name, fmt::join(names, ", "));
 }
 
-/// Checked before memory is allocated.
+/// Returns the counts of the whole mesh. Throws InputError for an invalid shape, before memory is allocated.
 KnownDiagnosis known_of(const BrokenShape& shape) {
   if (shape.defects.empty()) throw InputError("a broken mesh needs at least one defect (\"none\" is one)");
   if (shape.size == 0 || shape.size > kMaxBrokenSize) {
@@ -91,7 +91,7 @@ Box bounds_of(const LatticeMesh& mesh) {
   return box;
 }
 
-/// A part, and the place of its lattice's zero on the lattice of the whole.
+/// A part, and the place of its lattice's zero on the lattice of the whole mesh.
 struct Part {
   LatticeMesh mesh;
   Box box;

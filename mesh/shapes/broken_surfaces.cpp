@@ -132,7 +132,8 @@ Triangle split_side(LatticeMesh& mesh, int i) {
   return {a, b, middle};
 }
 
-/// Both halves of the split triangle meet the triangle across ab along half of its side, which is a side of neither.
+/// Each half of the split triangle meets the triangle across ab along half of ab. The two share no edge, because ab
+/// itself is a side of neither half.
 void add_split(Known& known, Count times) {
   known.triangles += times;
   known.vertices += times;
@@ -153,7 +154,7 @@ Known know_t_junction(Count s) {
   return known;
 }
 
-/// Opens every cell: one loop, and vertices along it where two fans meet.
+/// Splits every cell: the cracks form one loop, with vertices along it where two fans meet.
 void build_crack(LatticeMesh& mesh, int s) {
   box(mesh, s);
   for (int i = 0; i < s; ++i) split_side(mesh, i);

@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <numbers>
 
-/// Shared by the shape generators; not part of the room's interface.
+/// Shared by the shape generators; not part of the folder's interface.
 namespace penumbra::mesh::builder {
 
 inline constexpr double kTau = 2 * std::numbers::pi;

@@ -8,8 +8,8 @@
 
 Lengths are in the scene's unit, Y is up, angles are in degrees. Arrays of a picture are read-only views of its memory, row
 by row from the top left. Calls release the interpreter's lock while they work, and Ctrl-C ends them. Errors are
-`penumbra.Error` with the command line's messages: `UsageError` for a call that cannot be meant, arguments of a wrong type
-among them, `InputError` for a scene or file that cannot be used, `ResourceError` where the machine refuses.
+`penumbra.Error` with the command line's messages: `UsageError` for an invalid call, such as arguments of a wrong type,
+`InputError` for a scene or file that cannot be used, `ResourceError` for a missing resource of the machine.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from ._core import Cancelled, Error, InputError, ResourceError, UsageError
 
 __version__ = _core.version()
 for _error in (Cancelled, Error, InputError, ResourceError, UsageError):
-    _error.__module__ = __name__  # so that messages name the class as programs do
+    _error.__module__ = __name__  # so that messages name the class as programs import it
 __all__ = [
     "Cancelled", "Error", "InputError", "Instance", "LightPicture", "Picture", "Renderer", "ResourceError", "Scene", "UsageError",
     "add_method", "compare", "inspect", "load", "methods", "render", "wedges",
@@ -41,18 +41,19 @@ _SHAPES = {
     "sun": ("direction", "angle"),
     "dome": ("up", "rotate", "half", "image", "sampled"),
 }
-_PARTS = {  # of shapes: how each is checked
+_PARTS = {  # the check of each part of a shape
     "center": _arguments.vector, "half_u": _arguments.vector, "half_v": _arguments.vector, "normal": _arguments.vector,
     "direction": _arguments.vector, "up": _arguments.vector, "radius": _arguments.number, "angle": _arguments.number,
     "rotate": _arguments.number, "half": _arguments.flag, "sampled": _arguments.flag,
     "vertices": lambda name, value: _arguments.rows(name, value, "N").tolist(),
     "image": lambda name, value: "" if value is None else _os.fsdecode(_arguments.path(name, value)),
 }
-_SPELLINGS = {"halfU": "half_u", "halfV": "half_v", "twoSided": "two_sided"}  # of scene files
+_SPELLINGS = {"halfU": "half_u", "halfV": "half_v", "twoSided": "two_sided"}  # spellings in scene files
 
 
 class Instance(_typing.NamedTuple):
-    """One instance of a mesh, which is named or numbered: its first has number 0. Those of a file are `Instance("tree", 17)`."""
+    """One instance of a mesh: the mesh's name or number, and the instance's number, from 0. Instances that were read
+    from a file are named in this form: `Instance("tree", 17)`."""
 
     mesh: _typing.Union[str, int]
     number: int
@@ -75,9 +76,9 @@ class Scene:
     @classmethod
     def load(cls, file, *, lenient=False, allow_outside=False, frame=None, fps=24.0, lamp_radius=None, sun_angle=None,
              lumens_per_watt=None, clips=(), studio=False):
-        """Reads a .json (penumbra-scene/1), .gltf or .glb file, or a mesh file. Around a mesh, and a glTF scene without
-        lights, a studio is put (a light, a floor, a camera); with `studio` around any. `frame` is at frame / fps seconds of its animation; the
-        other options are those of `penumbra render`."""
+        """Reads a .json (penumbra-scene/1), .gltf or .glb file, or a mesh file. A mesh, or a glTF scene without lights,
+        is placed in a studio (a light, a floor, a camera); with `studio` every scene is. `frame` is at frame / fps
+        seconds of the file's animation; the other options are those of `penumbra render`."""
         arguments = _arguments
         return cls(_core.Scene.load(
             arguments.path("file", file), arguments.flag("lenient", lenient), arguments.flag("allow_outside", allow_outside),
@@ -88,8 +89,8 @@ class Scene:
 
     @classmethod
     def from_dict(cls, scene, folder=".", *, allow_outside=False):
-        """Builds a scene from a dict as a penumbra-scene/1 file has it. A mesh may have arrays "vertices" (V, 3) and "faces"
-        (F, 3) in place of a file or a shape. Names of files are relative to `folder`."""
+        """Builds a scene from a dict with the content of a penumbra-scene/1 file. A mesh may have arrays "vertices" (V,
+        3) and "faces" (F, 3) in place of a file or a shape. Names of files are relative to `folder`."""
         if not isinstance(scene, _Mapping):
             raise UsageError(f"Scene.from_dict({_arguments.shown(scene)}): expected a dict as a penumbra-scene/1 file has it")
         scene = dict(scene)
@@ -110,23 +111,25 @@ class Scene:
             _arguments.flag("receives_shadow", receives_shadow))
 
     def add_instance(self, mesh, matrix):
-        """Adds an instance of a mesh, by its name or number, which is stored once: `matrix` (4, 4), for column vectors, takes
-        its vertices to the world. From its first instance on a mesh is there once for each of them, and no longer by itself.
-        Returns an Instance, for set_transform."""
+        """Adds an instance of a mesh, given by its name or number, whose vertices are stored once. `matrix` (4, 4), for
+        column vectors, transforms them to the world. As soon as a mesh has an instance, it appears only where its
+        instances are. Returns an Instance, for set_transform."""
         mesh = self._mesh(mesh)
         return Instance(mesh, self._core.add_instance(mesh, _arguments.matrix("matrix", matrix)))
 
     def instance_count(self, mesh):
-        """Returns how many instances a mesh has, by its name or number; 0: the mesh itself is in the scene."""
+        """Returns the number of instances of a mesh, given by its name or number; 0: the mesh itself is in the
+        scene."""
         return self._core.instance_count(self._mesh(mesh))
 
     def set_positions(self, mesh, vertices):
-        """Other positions (V, 3) for the vertices of a mesh, by its name or number."""
+        """Replaces the positions (V, 3) of the vertices of a mesh, given by its name or number."""
         self._core.set_positions(self._mesh(mesh), _arguments.rows("vertices", vertices))
 
     def set_transform(self, mesh, matrix):
-        """Moves a mesh, by its name or number: `matrix` (4, 4), for column vectors, takes the positions that the mesh was
-        added or read with to where they are; with instances, it moves them all. Of an Instance, it replaces the matrix."""
+        """Moves a mesh, given by its name or number: applies `matrix` (4, 4), for column vectors, to the positions with
+        which the mesh was added or read. If the mesh has instances, moves them all. For an Instance, replaces its
+        matrix."""
         matrix = _arguments.matrix("matrix", matrix)
         if isinstance(mesh, Instance):
             number = _arguments.whole("number of the instance", mesh.number)
@@ -143,14 +146,14 @@ class Scene:
         return _arguments.whole("mesh", mesh, expected=expected)
 
     def add_light(self, name, kind, *, radiance=(10, 10, 10), two_sided=False, **shape):
-        """Adds a light of a kind: rectangle(center, half_u, half_v), disk(center, normal, radius), ellipse(center, half_u,
-        half_v), polygon(vertices), sphere(center, radius), sun(direction, angle) or dome(up, rotate, half, image, sampled), whose
-        parts all have defaults."""
+        """Adds a light of a kind: rectangle(center, half_u, half_v), disk(center, normal, radius), ellipse(center,
+        half_u, half_v), polygon(vertices), sphere(center, radius), sun(direction, angle) or dome(up, rotate, half,
+        image, sampled). All parts of a dome have defaults."""
         self._core.add_light(_arguments.name_of("name", name), kind, _shape(kind, shape), _arguments.vector("radiance", radiance),
                              _arguments.flag("two_sided", two_sided))
 
     def set_light(self, name, **changes):
-        """Changes a light: parts of its shape, `radiance`, `two_sided`; `kind` and the whole of another shape."""
+        """Changes a light: parts of its shape, `radiance` and `two_sided`, or `kind` with all parts of a new shape."""
         light = self.light(name)
         changes = {_SPELLINGS.get(key, key): value for key, value in changes.items()}
         has_options = "radiance" in changes or "two_sided" in changes
@@ -159,7 +162,7 @@ class Scene:
         kind = changes.pop("kind", light["kind"])
         if not isinstance(kind, str):
             raise _unknown_kind(kind)
-        # kind and the whole of a shape, or parts of the shape that is there
+        # another kind needs all parts of its shape; the same kind keeps the parts that are not given
         kept = {} if kind != light["kind"] else {key: light[key] for key in light if key not in ("kind", "radiance", "two_sided")}
         shape = _shape(kind, kept | changes) if changes or kind != light["kind"] else None
         if has_options:
@@ -169,21 +172,21 @@ class Scene:
                 self._core.set_light_shape(name, kind, shape)
             except Exception:
                 if has_options:
-                    self._core.set_light_options(name, light["radiance"], light["two_sided"])  # both or neither
+                    self._core.set_light_options(name, light["radiance"], light["two_sided"])  # neither change is made
                 raise
 
     def remove_light(self, name):
         self._core.remove_light(_arguments.name_of("name", name))
 
     def light(self, name):
-        """A dict of the light: its kind, shape, radiance and two_sided."""
+        """Returns a dict of the light: its kind, the parts of its shape, radiance and two_sided."""
         return self._core.light(_arguments.name_of("name", name))
 
     def set_camera(self, eye, target, up=(0, 1, 0), vertical_fov=45.0, height=None, name="camera", *,
                    aperture=0.0, focus_distance=None):
-        """Adds a camera, or replaces that of the same name; it looks by default. `height` makes it orthographic. `aperture`:
-        radius of a thin lens, sharp at `focus_distance` along the view axis (by default the target's), of pictures of several
-        view samples a pixel; 0: everything is sharp."""
+        """Adds a camera, or replaces the one with the same name, and makes it the default. `height` makes it
+        orthographic. `aperture`: radius of a thin lens, which is sharp at `focus_distance` along the view axis (by
+        default the target's) and blurs other surfaces if a pixel has several view samples; 0: everything is sharp."""
         eye, target = _arguments.vector("eye", eye), _arguments.vector("target", target)
         if focus_distance is None:
             focus_distance = float(_np.linalg.norm(_np.subtract(eye, target)))
@@ -209,7 +212,7 @@ class Scene:
 
     @property
     def size(self):
-        """(width, height) of pictures for which none is asked for."""
+        """Default (width, height) of pictures."""
         return tuple(self._core.size())
 
     @size.setter
@@ -222,7 +225,7 @@ class Scene:
         return self._core.warnings()
 
     def save(self, file):
-        """Writes .json, .glb or .obj; returns warnings about what the format cannot hold."""
+        """Writes .json, .glb or .obj; returns warnings about features that the format does not support."""
         return self._core.save(_arguments.path("file", file))
 
     def __repr__(self):
@@ -230,7 +233,7 @@ class Scene:
 
 
 def _without_arrays(index, mesh, arrays):
-    """A mesh of a scene's dict with something in place of its arrays, which are added to `arrays`."""
+    """Returns a mesh of a scene's dict with a placeholder for its arrays, which are added to `arrays`."""
     if not isinstance(mesh, _Mapping) or not ("vertices" in mesh or "faces" in mesh):
         return mesh
     if not ("vertices" in mesh and "faces" in mesh):
@@ -238,7 +241,7 @@ def _without_arrays(index, mesh, arrays):
     mesh = dict(mesh)
     vertices = _arguments.rows(f"/meshes/{index}/vertices", mesh.pop("vertices"))
     arrays.append((index, vertices, _arguments.faces(f"/meshes/{index}/faces", mesh.pop("faces"))))
-    # The file's rules ask for a source; the arrays replace this one.
+    # The schema requires a source of triangles; the arrays replace this one.
     mesh["triangles"] = [[0, 0, 0, 1, 0, 0, 0, 1, 0]]
     return mesh
 
@@ -265,7 +268,7 @@ class LightPicture:
 
     @property
     def V(self):
-        """Visibility (H, W), 0 to 1: the share of the light's area that the pixel sees."""
+        """Visibility (H, W), 0 to 1: the fraction of the light's area that the pixel sees."""
         return self._core.visibility(self._index)
 
     @property
@@ -275,7 +278,7 @@ class LightPicture:
 
     @property
     def masks(self):
-        """Light samples that each pixel sees, bool (H, W, N); None of areas and of methods without masks."""
+        """Light samples that each pixel sees, bool (H, W, N); None for exact areas and for methods without masks."""
         words = self._core.mask_words(self._index)
         if words is None:
             return None
@@ -284,7 +287,7 @@ class LightPicture:
 
     @property
     def method(self):
-        """The name of the method that it was done by."""
+        """The name of the method that was used for this light."""
         return self._core.method(self._index)
 
 
@@ -349,11 +352,11 @@ class Picture(LightPicture):
 
 
 class Renderer:
-    """Renders one scene again and again, and keeps from call to call what did not change: hierarchies over meshes, view
-    samples, the Vulkan device. The scene given to it is copied; `scene` is its own, which may be changed between calls."""
+    """Renders pictures of one scene, and keeps unchanged data from call to call: hierarchies over meshes, view samples,
+    the Vulkan device. The given scene is copied; `scene` is the renderer's copy, which may be changed between calls."""
 
     def __init__(self, scene, *, device="", log=None, progress=None):
-        """`device`: part of a Vulkan device's name, its index, or "cpu". `log(level, message)` gets messages,
+        """`device`: part of a Vulkan device's name, its index, or "cpu". `log(level, message)` receives messages,
         `progress(stage, done)` is called several times a second; the call ends with Cancelled if it returns False."""
         self._core = _core.Renderer(_as_scene(scene)._core, _device(device), _arguments.function("log", log),
                                     _arguments.function("progress", progress))
@@ -365,27 +368,28 @@ class Renderer:
         return self._scene
 
     def set_light(self, name, **changes):
-        """Scene.set_light of its scene."""
+        """Calls Scene.set_light of the renderer's scene."""
         self.scene.set_light(name, **changes)
 
     def set_camera(self, *args, **kwargs):
-        """Scene.set_camera of its scene."""
+        """Calls Scene.set_camera of the renderer's scene."""
         self.scene.set_camera(*args, **kwargs)
 
     def set_transform(self, mesh, matrix):
-        """Scene.set_transform of its scene."""
+        """Calls Scene.set_transform of the renderer's scene."""
         self.scene.set_transform(mesh, matrix)
 
     def render(self, size=None, method="", light_samples=0, options=None, light=None, camera="", *, sample_pattern="",
                sample_seed=0, pixel_samples=1, pixel_tolerance=1 / 512, light_cutoff=0.0, normals="shading",
                masks=True, instances="auto"):
-        """A Picture. `size`: (width, height), or None for the scene's. Without `method` each light gets the best one that
-        gives its exact area; with `light_samples` (1 to 4096) the best one with samples. `options`: a dict of the method's.
-        `light`: a name or names, for these lights alone. `normals`: "shading" or "geometric", of the beauty.
-        `pixel_samples`: view samples a pixel, a square number; of exact areas those are interpolated whose error is estimated
-        to be at most `pixel_tolerance` (0: none). A light is left out, with V = 0, where with nothing in between it would be at
-        most the share `light_cutoff` of all lights together, in each of red, green and blue. `instances`: "copies", "shared"
-        (without copies), or "auto": what costs less. All give the same picture."""
+        """Returns a Picture. `size`: (width, height), or None for the scene's. Without `method` each light gets the
+        best method that computes its exact area; with `light_samples` (1 to 4096) the best one with light samples.
+        `options`: a dict of the method's options. `light`: a name or names; only these lights are rendered. `normals`:
+        "shading" or "geometric", for the beauty. `pixel_samples`: view samples a pixel, a square number. Exact areas
+        are interpolated where the estimated error is at most `pixel_tolerance` (0: nowhere). A light is left out, with
+        V = 0, where without occluders it would be at most the share `light_cutoff` of all lights together, in each of
+        red, green and blue. `instances`: "copies", "shared" (without copies), or "auto": the cheaper one. All give the
+        same picture."""
         normals = _arguments.text("normals", normals)
         if normals not in ("shading", "geometric"):
             raise UsageError(f'normals "{normals}": expected shading or geometric')
@@ -401,7 +405,7 @@ class Renderer:
 
 
 def _device(device):
-    """Part of a device's name, or its index."""
+    """Returns part of a device's name, or its index, as text."""
     if isinstance(device, int) and not isinstance(device, bool):
         return str(device)
     return _arguments.text("device", device, "part of a device's name, its index, or \"cpu\"")
@@ -416,13 +420,13 @@ def _as_scene(scene):
 
 
 def load(file, **options):
-    """Scene.load."""
+    """Reads a scene: Scene.load(file, …)."""
     return Scene.load(file, **options)
 
 
 def render(scene, size=None, method="", light_samples=0, options=None, light=None, camera="", *, device="", log=None,
            progress=None, **more):
-    """One picture of a Scene, a dict (Scene.from_dict) or a file: Renderer(scene).render(…)."""
+    """Renders one picture of a Scene, a dict (Scene.from_dict) or a file: Renderer(scene).render(…)."""
     return Renderer(scene, device=device, log=log, progress=progress).render(
         size, method, light_samples, options, light, camera, **more)
 
@@ -430,10 +434,10 @@ def render(scene, size=None, method="", light_samples=0, options=None, light=Non
 def compare(scene, methods="default", *, reference="raytrace", reference_samples=1024, size=None, light_samples=256,
             sample_pattern="", light=None, camera="", runs=0, error_budget=False, out="", device="", log=None,
             progress=None):
-    """Several methods on the same view samples against a reference ("raytrace", "exact", or an entry whose areas are exact,
-    such as "edge-scatter:rows=exact"): a list of dicts as metrics.json's
-    `methods` has them. `methods`: entries "NAME:key=value:…", or the groups geometry, image, all, default. `out`: a folder
-    for pictures and the report."""
+    """Compares several methods on the same view samples with a reference ("raytrace", "exact", or an entry with exact
+    areas, such as "edge-scatter:rows=exact"). Returns a list of dicts, as under `methods` in metrics.json. `methods`:
+    entries "NAME:key=value:…", or the groups geometry, image, all, default. `out`: a folder for pictures and the
+    report."""
     arguments = _arguments
     width, height = arguments.size(size)
     entries = arguments.names("methods", methods, "an entry such as \"pcss:size=512\", a group, or a list of them")
@@ -451,13 +455,15 @@ def compare(scene, methods="default", *, reference="raytrace", reference_samples
 
 
 class Question:
-    """Arguments of an own method's function (add_method): numpy arrays, all positions relative to `origin`.
+    """Arguments of the function of a method added by add_method: numpy arrays; all positions are relative to `origin`.
 
-    For the K pixels that receive shadow of this light: `p` (K, 3) points, `n` (K, 3) unit normals toward the camera, `face`
-    (K,) the faces that carry them, `pixels` (K,) their numbers, row by row.
-    The scene: `vertices` (V, 3) float32, `faces` (F, 3), `casts` (F,) False for those that cast no shadow of this light.
-    The light: `light`, a dict with name, kind, center, u, v, radius, two_sided, outline, points (N, 3) and weights; of a sun
-    center, u, v and points are directions toward it. `points_of_pixel` (K, N, 3): a sphere's light samples, else None.
+    For the K pixels that receive shadows of this light: `p` (K, 3) points, `n` (K, 3) unit normals toward the camera,
+    `face` (K,) indices of the faces that the points are on, `pixels` (K,) indices of the pixels, row by row.
+    The scene: `vertices` (V, 3) float32, `faces` (F, 3), `casts` (F,) False for faces that cast no shadow of this
+    light.
+    The light: `light`, a dict with name, kind, center, u, v, radius, two_sided, outline, points (N, 3) and weights; for
+    a sun, center, u, v and points are directions toward it. `points_of_pixel` (K, N, 3): a sphere's light samples, else
+    None.
     The whole view: `size` (width, height), `all_p` and `all_n` (H, W, 3), `all_faces` (H, W), -1 in the background."""
 
     def __init__(self, values):
@@ -466,12 +472,14 @@ class Question:
 
 def add_method(name, function, *, family="image", masks=False, lights=tuple(_SHAPES), textures=False, options=None, paper="",
                exact_for="nothing"):
-    """Adds a shadow method of your own to this process: from then on `render`, `compare` and `methods` have it by its name.
+    """Adds a shadow method of the calling program to this process: `render`, `compare` and `methods` then accept its
+    name.
 
-    `function(question, **options)` gets a Question and returns V, an array (K,) of numbers from 0 to 1, or with `masks` a bool
-    array (K, N): does pixel k see light sample j? `options`: a dict of names to (default, least, most) for numbers, whole
-    if all three are int, or to a list of strings, the first of which is the default. `family`: "image" or "geometry".
-    `lights`: kinds that it does; `textures`: V is weighted by light["weights"]. What the function raises ends the call."""
+    `function(question, **options)` receives a Question and returns V, an array (K,) of numbers from 0 to 1, or with
+    `masks` a bool array (K, N): whether pixel k sees light sample j. `options`: a dict from names to (default, least,
+    most) for numbers, which are integers if all three are int, or to a list of strings, the first of which is the
+    default. `family`: "image" or "geometry". `lights`: supported kinds of lights; `textures`: V is weighted by
+    light["weights"]. An exception of the function ends the call."""
     name = _arguments.name_of("name", name)
     _arguments.function(f"method {name!r}: function", function, optional=False)
     masks = _arguments.flag("masks", masks)
@@ -504,8 +512,8 @@ def add_method(name, function, *, family="image", masks=False, lights=tuple(_SHA
 
 
 def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=100, log=None, progress=None):
-    """Returns a mesh's defects and each method's verdict on it, as the dict that `penumbra inspect --json` prints. `mesh`: a
-    file, or vertices (V, 3) with `faces` (F, 3). `log` and `progress` as of Renderer."""
+    """Returns a mesh's defects and each method's verdict on it, as the dict that `penumbra inspect --json` prints.
+    `mesh`: a file, or vertices (V, 3) with `faces` (F, 3). `log` and `progress`: as for Renderer."""
     options = (_arguments.number("weld", weld), _arguments.flag("self_intersections", self_intersections),
                _arguments.whole("list_limit", list_limit), _arguments.function("log", log), _arguments.function("progress", progress))
     if faces is None:
@@ -515,12 +523,12 @@ def inspect(mesh, faces=None, *, weld=0.0, self_intersections=True, list_limit=1
 
 
 def wedges(scene, light="", *, construction="original", from_="centre", validate=False):
-    """The penumbra wedges of a light: a dict as `penumbra wedges --json` writes it."""
+    """Returns the penumbra wedges of a light: the dict that `penumbra wedges --json` writes."""
     return _json.loads(_core.wedges_json(
         _as_scene(scene)._core, _arguments.text("light", light, "a light's name"), _arguments.text("construction", construction),
         _arguments.text("from_", from_), _arguments.flag("validate", validate)))
 
 
 def methods():
-    """All methods: a list of dicts as `penumbra methods --json` prints it."""
+    """Returns all methods: the list of dicts that `penumbra methods --json` prints."""
     return _json.loads(_core.methods_json())["methods"]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Checks of arguments. Each returns a value as the library takes it, or raises UsageError: which argument, what it is, what
-would be right. InputError is for a number in an array that no mesh can have, ResourceError for arrays too large to copy."""
+"""Checks of arguments. Each function returns the value in the form that the library takes, or raises UsageError with
+the argument's name, its value, and the expected value. InputError is raised for a number in an array that no mesh can
+have, ResourceError for arrays too large to copy."""
 
 import collections.abc as _abc
 import decimal as _decimal
@@ -13,8 +14,8 @@ import numpy as _np
 
 from ._core import InputError, ResourceError, UsageError
 
-LARGEST = 0xffffffff  # of counts and numbers, which are 32 bits in the library
-_DEEPEST = 64  # lists in lists in a scene; more is a list that contains itself
+LARGEST = 0xffffffff  # largest count or index: these have 32 bits in the library
+_DEEPEST = 64  # levels of nested lists in a scene; a deeper list must contain itself
 
 _short = _reprlib.Repr()
 _short.maxstring = _short.maxother = 60
@@ -22,7 +23,7 @@ _short.maxlist = _short.maxtuple = _short.maxdict = 4
 
 
 def shown(value):
-    """The value in a message: short, and of an array its type and shape."""
+    """Returns the value for messages: shortened, or an array's type and shape."""
     if isinstance(value, _np.ndarray) and value.ndim > 0:
         return f"(an array of {value.dtype}, shape {value.shape})"
     return _short.repr(value)
@@ -33,7 +34,7 @@ def _refuse(name, value, expected):
 
 
 def text(name, value, expected="a text"):
-    """A text; None is empty."""
+    """Returns a text; an empty one for None."""
     if value is None:
         return ""
     if not isinstance(value, str):
@@ -46,14 +47,15 @@ def text(name, value, expected="a text"):
 
 
 def name_of(name, value):
-    """A text that is there."""
+    """Returns a text; refuses None."""
     if value is None:
         raise _refuse(name, value, "a name")
     return text(name, value, "a name")
 
 
 def names(name, value, expected="a name, or a list of names", numbers=False):
-    """A list of texts: one by itself, or several; None is none. `numbers`: an index may stand for a name."""
+    """Returns a list of texts from one text or several; an empty list for None. `numbers`: an index may replace a
+    name."""
     if value is None:
         return []
     if isinstance(value, str) or (numbers and isinstance(value, _numbers.Integral)):
@@ -69,7 +71,7 @@ def names(name, value, expected="a name, or a list of names", numbers=False):
 
 
 def path(name, value, expected="a file's name"):
-    """A file's name."""
+    """Returns a file's name."""
     try:
         value = _os.fspath(value)
         if b"\0" in _os.fsencode(value):
@@ -80,14 +82,14 @@ def path(name, value, expected="a file's name"):
 
 
 def flag(name, value):
-    """True or False, also as 1 or 0."""
+    """Returns True or False; also accepts 1 or 0."""
     if not isinstance(value, (bool, _np.bool_, _numbers.Integral)) or value not in (0, 1):
         raise _refuse(name, value, "True or False")
     return bool(value)
 
 
 def _as_number(value):
-    """The value as int or float; None: it is no real number."""
+    """Returns the value as int or float; None if it is not a real number."""
     if isinstance(value, _np.ndarray) and value.ndim == 0:
         value = value[()]
     if isinstance(value, (bool, _np.bool_)) or not isinstance(value, (_numbers.Real, _decimal.Decimal)):
@@ -99,7 +101,7 @@ def _as_number(value):
 
 
 def number(name, value, expected="a number"):
-    """A number as float, which may be NaN: the library says what is wrong with that."""
+    """Returns a number as float. It may be NaN, which the library refuses with its own message."""
     found = _as_number(value)
     try:
         if found is not None:
@@ -110,7 +112,7 @@ def number(name, value, expected="a number"):
 
 
 def finite(name, value, expected="a finite number"):
-    """A number that is neither NaN nor infinite; None stays None."""
+    """Returns a number that is neither NaN nor infinite; None stays None."""
     if value is None:
         return None
     found = number(name, value, expected)
@@ -120,7 +122,7 @@ def finite(name, value, expected="a finite number"):
 
 
 def whole(name, value, least=0, expected=None):
-    """A whole number from `least` on, as int; None is 0."""
+    """Returns an integer of at least `least`; 0 for None."""
     if value is None:
         return 0
     found = _as_number(value)
@@ -130,7 +132,7 @@ def whole(name, value, least=0, expected=None):
 
 
 def size(value):
-    """Width and height; None is (0, 0)."""
+    """Returns width and height; (0, 0) for None."""
     if value is None:
         return 0, 0
     expected = "two whole numbers of pixels, at least 1"
@@ -147,14 +149,15 @@ def size(value):
 
 
 def function(name, value, optional=True):
-    """Something that can be called, or None."""
+    """Returns a callable object, or None."""
     if not (callable(value) or (optional and value is None)):
         raise _refuse(name, value, "a function" + (" or None" if optional else ""))
     return value
 
 
 def _array(name, value, expected):
-    """An array of real numbers. numpy would read numbers out of texts, and drop imaginary parts and masks in silence."""
+    """Returns an array of real numbers. numpy alone would read numbers from texts, and silently drop imaginary parts
+    and masks."""
     try:
         array = _np.asarray(value)
     except (TypeError, ValueError, RuntimeError, OverflowError) as error:
@@ -172,7 +175,7 @@ def _kind(array):
 
 
 def _available_bytes():
-    """Memory that the machine has left; None where that cannot be read."""
+    """Returns the machine's available memory in bytes; None if it cannot be read."""
     try:
         with open("/proc/meminfo") as lines:
             return next(int(line.split()[1]) << 10 for line in lines if line.startswith("MemAvailable"))
@@ -181,13 +184,14 @@ def _available_bytes():
 
 
 def _rows_of_three(name, value, expected):
-    """An array (N, 3) of which copies fit into memory: the system would kill a process that makes them where they do not."""
+    """Returns an array (N, 3) whose copies fit into memory: otherwise the system would kill the process that makes
+    them."""
     array = _array(name, value, expected)
     if array.size == 0 and array.ndim < 2:
         array = array.reshape(0, 3)  # an empty list
     if array.ndim != 2 or array.shape[1] != 3:
         raise UsageError(f"{name}: {expected}, not of shape {array.shape}")
-    needed = 3 * 8 * array.size  # one copy here, two of the library's
+    needed = 3 * 8 * array.size  # one copy here, two in the library
     available = _available_bytes() if needed > 256 << 20 else None
     if available is not None and needed > available:
         raise ResourceError(f"{name}: an array of shape {array.shape} needs about {needed / 2 ** 30:.1f} GiB of memory, more than the "
@@ -196,7 +200,7 @@ def _rows_of_three(name, value, expected):
 
 
 def _converted(name, array, kind):
-    """The array as one block of another type."""
+    """Returns the array as one contiguous block of another type."""
     try:
         return _np.ascontiguousarray(array, kind)
     except MemoryError:
@@ -204,12 +208,12 @@ def _converted(name, array, kind):
 
 
 def rows(name, value, letter="V"):
-    """Positions (V, 3) in double."""
+    """Returns positions (V, 3) in double."""
     return _converted(name, _rows_of_three(name, value, f"expected numbers of shape ({letter}, 3)"), _np.float64)
 
 
 def faces(name, value):
-    """Faces (F, 3): whole numbers of vertices."""
+    """Returns faces (F, 3): indices of vertices."""
     array = _rows_of_three(name, value, "expected whole numbers of vertices, of shape (F, 3)")
     is_whole = (array >= 0) & (array <= LARGEST)
     if array.dtype.kind == "f":
@@ -223,7 +227,7 @@ def faces(name, value):
 
 
 def vector(name, value):
-    """Three numbers, as a tuple of floats."""
+    """Returns three numbers as a tuple of floats."""
     array = _array(name, value, "expected three numbers")
     if array.shape != (3,):
         raise _refuse(name, value, "three numbers")
@@ -231,7 +235,7 @@ def vector(name, value):
 
 
 def matrix(name, value):
-    """A matrix (4, 4), or its sixteen numbers row by row."""
+    """Returns a matrix (4, 4), or its sixteen numbers row by row."""
     expected = "expected a matrix of numbers of shape (4, 4)"
     array = _array(name, value, expected)
     if array.shape not in ((4, 4), (16,)):
@@ -240,7 +244,7 @@ def matrix(name, value):
 
 
 def values_of(name, answer, masks):
-    """What a method's function returned: numbers, or with `masks` bools."""
+    """Returns the result of a method's function as an array: numbers, or with `masks` bools."""
     expected = f"{name}: expected its function to return " + ("bools of shape (K, N)" if masks else "V as numbers of shape (K,)")
     try:
         array = _np.asarray(answer)
@@ -252,7 +256,7 @@ def values_of(name, answer, masks):
 
 
 def options(name, given):
-    """A method's options as texts."""
+    """Returns a method's options as texts."""
     if given is None:
         return {}
     if not isinstance(given, _abc.Mapping):
@@ -273,7 +277,7 @@ def options(name, given):
 
 
 def _are_finite(values):
-    """Are these finite numbers, all of Python's own types?"""
+    """Returns whether these are finite numbers, all of Python's own types."""
     try:
         return set(map(type, values)) <= {int, float} and all(map(_math.isfinite, values))
     except OverflowError:
@@ -281,7 +285,7 @@ def _are_finite(values):
 
 
 def plain(value, place=""):
-    """Values of a scene's dict as JSON has them. `place` is the JSON pointer to the value."""
+    """Returns a value of a scene's dict in the form that JSON supports. `place` is the JSON pointer to the value."""
     where = place or "the scene"
     if isinstance(value, (_np.ndarray, _np.generic)):
         value = value.tolist()  # complex numbers and objects are refused below

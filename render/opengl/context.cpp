@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EGL without a display server: each device of EGL_EXT_device_enumeration is a display of its own; without that
+// EGL without a display server: each device of EGL_EXT_device_enumeration is a separate display; without that
 // extension, EGL_MESA_platform_surfaceless gives one. Displays are shared by the process and not counted: none is
 // terminated, since another context may use it.
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks scenes of every format for what the methods rely on: finite numbers, coordinates and radiance within float's
-// range when summed, cameras that look somewhere.
+// Checks scenes of every format for the properties that methods rely on: finite numbers, coordinates and sums of
+// radiance within float's range, and cameras with a view direction.
 
 #include "scenes/formats/checks.hpp"
 

@@ -28,11 +28,12 @@
 namespace penumbra::scenes {
 namespace {
 
-/// Scenes are read ahead only where their bytes (import's kAheadBytes, held thrice while they are decoded) are little
-/// of the free memory.
+/// Scenes are read ahead only if more memory than this is free: then their bytes (kAheadBytes in import/main.cpp, held
+/// three times while they are decoded) are a small part of it.
 constexpr std::uint64_t kMemoryForAhead = std::uint64_t{4} << 30U;
 
-/// Pictures of domes lie beside the file, as with JSON scenes. `has_folder`: whether the file lies somewhere.
+/// Reads the pictures of domes, which are looked for next to the file, as with JSON scenes. `has_folder`: whether the
+/// file is in a folder.
 void read_skies(const std::filesystem::path& file, bool has_folder, const ReadOptions& options, Scene& scene) {
   for (AreaLight& light : scene.lights) {
     const auto* const dome = std::get_if<Dome>(&light.shape);
@@ -51,7 +52,7 @@ Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOp
   if (options.lenient) job.flags.emplace_back("--lenient");
   if (!options.needs_light) job.flags.emplace_back("--without-light");
   if (!options.needs_surface) job.flags.emplace_back("--without-surface");
-  // {} gives the shortest text that is this very number again.
+  // {} gives the shortest text that reads back as the same number.
   if (options.lamp_radius) job.flags.push_back(fmt::format("--lamp-radius={}", *options.lamp_radius));
   if (options.sun_angle) job.flags.push_back(fmt::format("--sun-angle={}", *options.sun_angle));
   if (options.lumens_per_watt) job.flags.push_back(fmt::format("--lumens-per-watt={}", *options.lumens_per_watt));
@@ -94,7 +95,7 @@ Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOp
   }
 }
 
-/// A file without a name that holds these bytes.
+/// Returns a nameless file that holds these bytes.
 Descriptor file_of(std::span<const std::byte> bytes, const std::string& name) {
   Descriptor file(::memfd_create("glb", MFD_CLOEXEC));
   if (!file.is_open()) throw_file_error(errno, name);
@@ -123,7 +124,7 @@ Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options) {
 Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options,
                const std::filesystem::path& folder) {
   if (bytes.empty()) throw InputError("{}: it is empty", name);
-  // Files that the bytes name are looked for in a place that holds none if there is no folder.
+  // Without a folder, files that the bytes name are looked for in a place that holds no files.
   const std::filesystem::path home = folder.empty() ? "/dev/null" : folder;
   const int flags = O_RDONLY | O_CLOEXEC | (folder.empty() ? 0 : O_DIRECTORY);
   mesh::InputFile input{folder / (name + ".glb"), file_of(bytes, name), Descriptor(::open(home.c_str(), flags))};

@@ -11,7 +11,7 @@
 
 namespace penumbra::scenes {
 
-/// Reads a glTF 2.0 scene (.gltf or .glb) as Blender's exporter writes it; in the import helper's process and under its
+/// Reads a glTF 2.0 scene (.gltf or .glb) as Blender's exporter writes it, in the import helper's process and under its
 /// limits, like every foreign file.
 ///
 /// - The default scene's node tree; a node's mesh becomes one object for each primitive, named after the node.
@@ -23,14 +23,14 @@ namespace penumbra::scenes {
 ///   which its triangles run counter-clockwise, to both if the material is double-sided. It stays an object, with
 ///   `emits` set.
 ///
-/// InputError, with a place such as "/accessors/3", for whatever glTF 2.0 forbids and matters here, for a scene
+/// Throws InputError, with a place such as "/accessors/3", for violations of glTF 2.0 that matter here, for a scene
 /// without an area light if `options.needs_light`, and for a buffer outside the file's folder unless
 /// `options.allow_outside`.
 ///
-/// FBX and COLLADA files (.fbx, .dae) likewise, with what import/foreign_scene.hpp says of them.
+/// Also reads FBX and COLLADA files (.fbx, .dae), as import/foreign_scene.hpp describes.
 Scene read_gltf(const std::filesystem::path& file, const ReadOptions& options = {});
-/// Reads a file's bytes (.glb) that lie in memory. `name`: in messages. `folder`: the files that `bytes` names lie
-/// here; empty: there are none.
+/// Reads a .glb file whose bytes are in memory. `name`: its name in messages. `folder`: folder of the files that
+/// `bytes` names; empty: there are no such files.
 Scene read_glb(std::span<const std::byte> bytes, const std::string& name, const ReadOptions& options = {},
                const std::filesystem::path& folder = {});
 

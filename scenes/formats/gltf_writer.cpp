@@ -72,7 +72,7 @@ class GlbBuilder {
     return glb_.add_material(std::move(material));
   }
 
-  /// Returns the number of a mesh that no node shows yet; `extras` as import/gltf/gltf_extras.hpp reads them.
+  /// Adds a mesh that no node shows yet, and returns its number; `extras` as import/gltf/gltf_extras.hpp reads them.
   int add_mesh(const std::string& name, const GlbVertices& vertices, const std::vector<std::uint32_t>& indices,
                int material, tinygltf::Value::Object extras = {}) {
     PENUMBRA_ASSERT(!vertices.positions.empty() && !indices.empty(), "mesh \"{}\" is empty", name);
@@ -88,7 +88,7 @@ class GlbBuilder {
     return glb_.add_mesh(std::move(mesh));
   }
 
-  /// Adds a node that shows a mesh; null: where the mesh's own space is the world.
+  /// Adds a node that shows a mesh, placed by `to_world`; null: the mesh's own space is the world.
   void show_mesh(const std::string& name, int mesh, const glm::dmat4* to_world = nullptr) {
     tinygltf::Node node;
     node.name = name;
@@ -219,7 +219,8 @@ class GlbBuilder {
   bool uses_emissive_strength_ = false;
 };
 
-/// Returns the number of a mesh of some of the soup's triangles, with an object's surface. `looks` are the vertices'.
+/// Adds a mesh of some of the soup's triangles, with an object's surface, and returns its number. `looks` are those of
+/// the soup's vertices.
 int add_object(const Scene& scene, const mesh::TriangleSoup& soup, const VertexLooks& looks, const ObjectRange& range,
                GlbBuilder& glb) {
   const Object& object = scene.objects[range.object];
@@ -253,7 +254,7 @@ int add_object(const Scene& scene, const mesh::TriangleSoup& soup, const VertexL
   return glb.add_mesh(object.name, vertices, indices, glb.add_material(scene, object), std::move(extras));
 }
 
-/// Adds meshes of instances, each once for each surface that it has.
+/// Adds the meshes of instances, each mesh once for each surface with which it occurs.
 class SharedGlbMeshes {
  public:
   SharedGlbMeshes(const Scene& scene, const Instances& instances, GlbBuilder& glb)

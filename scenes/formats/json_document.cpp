@@ -112,8 +112,8 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
     return true;
   }
 
-  /// Returns the place of the outermost `levels` open containers: with all of them, that of the value that is about to
-  /// be added; with one less, that of the innermost container.
+  /// Returns the place inside the outermost `levels` open containers. If these are all open containers, it is the place
+  /// of the value that is about to be added; with one level less, it is the place of the innermost container.
   [[nodiscard]] Place place_under(std::size_t levels) const {
     Place place{file_, {}};
     for (std::size_t i = 0; i < levels; ++i) {

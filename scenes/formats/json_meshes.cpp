@@ -195,8 +195,8 @@ const json& transform_of(const json& instance, const Place& place) {
   return instance["transform"];
 }
 
-/// Replaces the mesh by a copy for each instance, one after the other. `times`: how often the scene's reader has them
-/// in memory; `more_bytes`: ReadOptions::bytes_per_copy.
+/// Replaces the mesh by a copy for each instance, one after the other. `times`: how many times the scene's reader has
+/// the copies in memory; `more_bytes`: ReadOptions::bytes_per_copy.
 void apply_instances(const json& instances, const Place& place, std::uint64_t times, std::uint64_t more_bytes,
                      SourceMesh& mesh) {
   const std::size_t count = instances.size(), positions = mesh.soup.positions.size(),

@@ -32,10 +32,10 @@ SceneFile open_scene_file(const std::string& name, const Place& place, const Rea
 /// Opens the picture of a dome in the same manner; the file goes to `scene.sources`.
 Texture read_sky(const std::string& name, const Place& place, const ReadOptions& options, Scene& scene);
 
-/// Reads, generates or lists the mesh of the scene's last object, or copies it from ReadOptions::given, and transforms
-/// it to world space, once for each of its instances; with ReadOptions::instances, returns the mesh before any of their
-/// transforms. Changes are reported in `scene.warnings`, read files in `scene.sources`; the mesh's lightmap coordinates
-/// are appended to ReadOptions::lightmap.
+/// Makes the mesh of the scene's last object: reads its file, generates it, takes its listed triangles, or copies it
+/// from ReadOptions::given. Transforms it to world space, once for each of its instances; with ReadOptions::instances,
+/// returns the mesh before any of their transforms. Changes are reported in `scene.warnings`, read files in
+/// `scene.sources`; the mesh's lightmap coordinates are appended to ReadOptions::lightmap.
 mesh::TriangleSoup read_mesh(const nlohmann::json& mesh, const Place& place, const ReadOptions& options, Scene& scene);
 
 /// Converts picture coordinates whose v runs upward, as OBJ has them, to v from the top; kNoPlace stays.
@@ -43,13 +43,13 @@ std::vector<glm::dvec2> from_top(std::vector<glm::dvec2> places);
 /// Returns the coordinates of the vertices that drop_unused_vertices keeps.
 std::vector<glm::dvec2> places_of_kept(std::vector<glm::dvec2> places, const std::vector<std::uint32_t>& kept);
 
-/// Adds the mesh, as read_mesh returns it with ReadOptions::instances, as a shared mesh: instances of `object` after
-/// the triangles and instances already in the scene.
+/// Adds the mesh, as read_mesh returns it with ReadOptions::instances, as a shared mesh. Its instances belong to
+/// `object`, and come after the triangles and instances already in the scene.
 void add_instances(const nlohmann::json& instances, const Place& place, mesh::TriangleSoup mesh, std::uint32_t object,
                    const Scene& scene, Instances& to);
 
 /// Checks that all entries of "meshes" whose size is known in advance fit into memory together, before the first is
-/// made. Instances that are no copies (`shared`) count once; copies count with `bytes_per_copy` of ReadOptions. Files
+/// made. Instances that are not copies (`shared`) count once; copies count with `bytes_per_copy` of ReadOptions. Files
 /// are not counted: their size is known only after reading. Throws ResourceError with the figures, and InputError for
 /// an impossible shape.
 void require_room_for_meshes(const nlohmann::json& meshes, const Place& place, bool shared,

@@ -222,7 +222,7 @@ std::set<std::uint32_t> named_objects(const json& names, const Place& place, con
   return found;
 }
 
-/// Reads the casters of each light: those included, or all, without those excluded.
+/// Reads the casters of each light: the included objects, or all if none are named, minus the excluded ones.
 void read_casters(const json& document, const Place& root, Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     const json& value = document["lights"][i];
@@ -264,7 +264,8 @@ void append(mesh::TriangleSoup& soup, mesh::TriangleSoup mesh, std::uint32_t obj
   soup.source_face.insert(soup.source_face.end(), mesh.source_face.begin(), mesh.source_face.end());
 }
 
-/// Comes before all other rules, which another version of the format may not have.
+/// Throws InputError for another version of the format. Called before all other checks, which that version may not
+/// require.
 void require_version(const json& document, const std::string& file) {
   constexpr std::string_view kVersions = "penumbra-scene/", kRead = "penumbra-scene/1";
   if (!document.is_object() || !document.contains("format") || !document["format"].is_string()) return;

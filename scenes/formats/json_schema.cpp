@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Validates a scene against the schema that is compiled in. Long lists of triangles are checked by a loop of their own
-// and set aside meanwhile.
+// Validates a scene against the schema that is compiled in. Long lists of triangles are checked by a separate loop, and
+// set aside while the rest is validated.
 
 #include "scenes/formats/json_schema.hpp"
 

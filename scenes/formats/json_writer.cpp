@@ -110,7 +110,7 @@ std::vector<Entry> entries_of(const Scene& scene, const Instances& instances) {
   return entries;
 }
 
-/// Notes whether objects and triangles' numbers have changed.
+/// Adds notes if objects or the numbers of triangles have changed.
 void note_entries(const Scene& scene, std::span<const Entry> entries, Notes& notes) {
   std::size_t ranges = 0, merged = 0;
   bool in_order = true, precise = true;

@@ -54,7 +54,8 @@ std::set<std::string> listed_files(const std::vector<std::filesystem::path>& lis
   return files;
 }
 
-/// Packages may list as /lib files that are in /usr/lib: the links at the root belong to the system.
+/// Returns whether the lists contain the path. Packages may list files of /usr/lib under /lib, because the system links
+/// /lib to /usr/lib.
 bool is_listed(const std::set<std::string>& files, const std::string& path) {
   constexpr std::string_view kUsr = "/usr";
   return files.contains(path) || (path.starts_with("/usr/") && files.contains(path.substr(kUsr.size())));

@@ -15,7 +15,7 @@
 
 namespace penumbra::scenes {
 
-/// A named, coloured object to look at.
+/// A named, coloured object for display.
 struct Part {
   std::string name;
   glm::dvec4 color{1};  ///< linear red, green, blue; opacity

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a scene of any format, and puts a studio around what has no light or camera.
+// Reads a scene of any format, and puts a studio around a scene without light or camera.
 
 #include "scenes/formats/reader.hpp"
 
@@ -47,8 +47,8 @@ Scene read_mesh_file(const std::filesystem::path& file, const ReadOptions& optio
   return scene;
 }
 
-/// Makes added domes count light samples where exact areas would need copies of many triangles (docs/instances.md),
-/// with a warning.
+/// Makes added domes use light samples where exact areas would need copies of many triangles (docs/instances.md), and
+/// adds a warning.
 void sample_added_domes(Scene& scene, const Instances& instances, StudioWish& studio) {
   const std::uint64_t triangles = triangle_count(scene, instances);
   if (instances.empty() || triangles <= kFewCopies || std::ranges::all_of(studio.lights, has_place)) return;
@@ -70,8 +70,8 @@ Scene read_at_rest(const std::filesystem::path& file, ReadOptions options) {
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) {
-  // Copies are made in one step, from shared meshes: then their number is known before memory is touched. Lightmap
-  // coordinates are read for each copy.
+  // Copies are made in one step, from shared meshes, so that their number is known before memory is touched. With
+  // lightmap coordinates, which are read for each copy, the reader makes the copies itself.
   Instances to_copy;
   ReadOptions reading = options;
   if (options.instances == nullptr && options.lightmap == nullptr) reading.instances = &to_copy;
@@ -102,7 +102,7 @@ Scene read_scene(const std::filesystem::path& file, const ReadOptions& options) 
   const bool gets_floor = studio.floor && !studio.lights.empty() && scene.lights.empty() && !studio.never;
   const bool is_around = lacks || studio.always || gets_floor || std::ranges::any_of(studio.lights, has_place) ||
                          !studio.fit_camera.empty();
-  if (is_around && options.instances != nullptr)  // a studio encloses all instances, to the last bit
+  if (is_around && options.instances != nullptr)  // a studio depends on the copies' exact bounds
     scene = copied(std::move(scene), std::exchange(*options.instances, {}), options.bytes_per_copy);
   if (options.instances != nullptr && !studio.lights.empty()) sample_added_domes(scene, *options.instances, studio);
   const bool has_triangles =

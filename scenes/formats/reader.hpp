@@ -55,11 +55,11 @@ struct ReadOptions {
   /// Receives meshes that the scene has several times (scenes/instances.hpp); null: they are copied into the scene's
   /// soup.
   Instances* instances = nullptr;
-  /// Memory for each triangle that the caller needs afterwards, beside the scene: instances become copies only where
-  /// this fits as well.
+  /// Memory for each triangle that the caller needs afterwards, in addition to the scene: instances become copies only
+  /// where this fits as well.
   std::uint64_t bytes_per_copy = 0;
-  /// glTF with a `time`: other times at which the scene will be wanted; scenes are taken from here, and read in advance
-  /// while the file is parsed. Not with `lightmap`. Null: none.
+  /// glTF with a `time`: other times at which the scene will be needed. Their scenes are read in advance while the file
+  /// is parsed, and later taken from here. Not with `lightmap`. Null: none.
   ScenesAhead* ahead = nullptr;
   /// Called ten times a second while another process reads a file, and before each mesh of a JSON file; its exception
   /// ends the reading. Null: none.

@@ -12,7 +12,7 @@
 
 namespace penumbra::scenes {
 
-/// Scenes of one animated file that are read before they are asked for: the file is opened and parsed once for several
+/// Scenes of one animated file that are read before they are needed: the file is opened and parsed once for several
 /// times of its animation. One reader at a time.
 struct ScenesAhead {
   struct Read {
@@ -21,7 +21,7 @@ struct ScenesAhead {
     Instances instances;
   };
 
-  std::vector<double> times;  ///< asked for later, in this order, seconds; those in `kept` are not among them
+  std::vector<double> times;  ///< times needed later, in this order, in seconds; without those in `kept`
   std::list<Read> kept;       ///< read, and not yet taken
   std::optional<Scene> rest;  ///< the file at rest, around which studios are built
 

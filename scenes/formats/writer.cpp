@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a scene as JSON, GLB or OBJ. What the format lacks is collected, and refused or warned of, before much is
-// written; the scene itself comes last, after the files that it names.
+// Writes a scene as JSON, GLB or OBJ. Features that the format lacks are collected, and refused or reported as
+// warnings, before much is written. The scene itself is written last, after the files that it names.
 
 #include "scenes/formats/writer.hpp"
 
@@ -66,7 +66,7 @@ void TextStream::flush() {
   buffer_.clear();
 }
 
-/// Sets the objects of which a vertex has a value other than `plain`.
+/// Marks in `with` the objects with a vertex whose value is not `plain`.
 template <typename Vector>
 void find_objects_with(const mesh::TriangleSoup& soup, std::span<const Vector> looks, const Vector& plain,
                        std::vector<bool>& with) {
@@ -121,7 +121,7 @@ std::uint64_t writer_bytes_per_triangle(const std::filesystem::path& file) {
 
 namespace {
 
-/// Returns whether the file has each mesh once, and not a copy for each instance.
+/// Returns whether the file will have each mesh once, and not a copy for each instance.
 bool is_shared(const Scene& scene, const Instances& instances, const std::string& extension, WriteInstances use) {
   if (extension == ".obj" || use == WriteInstances::copies) return false;
   if (extension == ".glb" || use == WriteInstances::shared) return true;

@@ -11,9 +11,9 @@
 
 namespace penumbra::scenes {
 
-/// How instances are written. copies: each as a mesh of its own, in the world. shared: one mesh, once for each instance
-/// (.json, .glb). automatic: shared where reading the file back gives the same scene, in .glb always, else copies, but
-/// shared where copies would be many (kFewCopies).
+/// How instances are written. copies: each as a separate mesh in world space. shared: the mesh once, with its instances
+/// (.json, .glb). automatic: in .glb always shared; in .json shared if reading the file back gives the same scene, or
+/// if the scene has more than kFewCopies triangles, else copies.
 enum class WriteInstances : std::uint8_t { automatic, copies, shared };
 
 struct WriteOptions {
@@ -25,12 +25,12 @@ struct WriteOptions {
 /// - .json: penumbra-scene/1; reading it back gives the same scene to the last bit (inline triangles share no vertices,
 ///   and a face is a triangle). A light's texture is written next to it, as "NAME-light0.exr" of "NAME.json".
 /// - .glb: positions and other vertex attributes in float32, materials with base colour, pictures and alpha, cameras; a
-///   rectangle or polygon light becomes an emissive flat mesh after all others (a disk one with 64 sides), unless a
-///   mesh of the scene is its body already. A light's texture is replaced by its mean colour.
+///   rectangle or polygon light becomes an emissive flat mesh after all others (a disk becomes a polygon with 64
+///   sides), unless a mesh of the scene is its body already. A light's texture is replaced by its mean colour.
 /// - .obj: an object for each object, geometry only.
 ///
-/// Shared instances are "instances" of a mesh in .json, in which objects with the same mesh and surface become one, and
-/// nodes of one mesh in .glb.
+/// Shared instances become "instances" of a mesh in .json, where objects with the same mesh and surface are joined, and
+/// nodes that share a mesh in .glb.
 ///
 /// Returns descriptions of the parts that the format could not hold. The file appears whole or not at all. Throws
 /// UsageError for another extension, InputError for losses that would change shadows (unless lenient), ResourceError if
@@ -38,7 +38,7 @@ struct WriteOptions {
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& file,
                                      const WriteOptions& options = {}, const Instances& instances = {});
 
-/// Returns the memory that write_scene takes for each triangle, which is none where texts are written piece by piece.
+/// Returns the memory that write_scene takes for each triangle: 0 for texts, which are written piece by piece.
 std::uint64_t writer_bytes_per_triangle(const std::filesystem::path& file);
 
 /// Returns the files that write_scene writes in addition to `file`: textures.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Divides an emitting mesh into flat convex parts (Hertel and Mehlhorn 1983; convex_parts.hpp has the departures).
+// Divides an emitting mesh into flat convex parts (Hertel and Mehlhorn 1983; convex_parts.hpp describes the
+// differences).
 
 #include "import/gltf/emitters/convex_parts.hpp"
 
@@ -21,8 +22,8 @@ namespace {
 using Loop = std::vector<std::uint32_t>;
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Returns a vector of twice the area's length, computed relative to the loop's first point, so that nothing cancels
-/// far from the origin.
+/// Returns the area vector times two, computed relative to the loop's first point, so that nothing cancels far from the
+/// origin.
 glm::dvec3 vector_area(const Welded& mesh, const Loop& loop) {
   const glm::dvec3 first = mesh.points[loop[0]];
   glm::dvec3 sum(0);
@@ -184,8 +185,8 @@ std::vector<std::vector<std::size_t>> flat_regions(const Welded& mesh, double ro
       reach = std::max(reach, glm::distance(mesh.points[point], from));
     return std::ranges::all_of(mesh.triangles[b], [&](std::uint32_t point) {
       const glm::dvec3 direction = mesh.points[point] - from;
-      // The plane of three rounded points is off by the rounding at these points, and farther away in proportion to the
-      // inverse of the triangle's height, which is its doubled area over its reach.
+      // The plane through three rounded points is off by the rounding at these points. Farther away, its error grows in
+      // inverse proportion to the triangle's height, which is twice its area divided by its reach.
       return std::abs(glm::dot(normals[a], direction)) <=
              4 * rounding * (1 + glm::length(direction) * reach / sizes[a]);
     });

@@ -207,7 +207,7 @@ bool hides_itself(const std::vector<Piece>& pieces, bool two_sided, double round
     for (const std::vector<glm::dvec3>& other : corners) {
       for (const glm::dvec3& corner : other) {
         const double height = glm::dot(normal / size, corner - own[0]);
-        // The accuracy of the plane depends on the piece's size; height over area gives its error far away.
+        // The plane is known to within the rounding at the piece itself; its error grows with distance × reach / area.
         const double allowed = 8 * rounding * (1 + glm::distance(corner, own[0]) * reach / size);
         if (height > allowed || (two_sided && height < -allowed)) return true;
       }

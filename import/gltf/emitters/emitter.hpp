@@ -34,10 +34,10 @@ inline constexpr std::size_t kMostPieces = 1024;
 /// convex outline (flat_light.hpp) or a sphere (sphere_light.hpp). Otherwise each of its connected meshes is one of
 /// these, or is divided into flat convex parts (convex_parts.hpp).
 ///
-/// Triangles emit to the side from which they run counter-clockwise, if `two_sided` to both. But of a closed mesh only
-/// the outside is visible, and a mesh enclosed by another is invisible: if `two_sided`, closed meshes emit outward
-/// regardless of their winding, and meshes inside a closed mesh that emits outward do not emit. `rounding`: distance of
-/// each position from its intended place.
+/// Triangles emit to the side from which they run counter-clockwise, or to both sides if `two_sided`. But only the
+/// outside of a closed mesh is visible, and a mesh enclosed by another is invisible: if `two_sided`, closed meshes emit
+/// outward regardless of their winding, and meshes inside a closed mesh that emits outward do not emit. `rounding`:
+/// distance of each position from its intended place.
 std::variant<Emitter, std::string> recognise_emitter(std::span<const glm::dvec3> positions,
                                                      std::span<const mesh::Triangle> triangles, bool two_sided,
                                                      double rounding);

@@ -15,8 +15,8 @@ namespace penumbra::import {
 namespace {
 
 constexpr double kNearest = 0.98;  // least distance of a triangle's plane from the centre, relative to the radius
-/// Largest deviation of corners from one sphere, relative to its radius: a hundredth of that of planes. Blender's
-/// spheres, computed in single precision from angles, are up to 2e-6 off.
+/// Largest deviation of corners from one sphere, relative to its radius: a hundredth of the tolerance for planes.
+/// Blender's spheres, computed in single precision from angles, are up to 2e-6 off.
 constexpr double kUneven = (1 - kNearest) / 100;
 
 /// Returns the centre that fits |p − c|² = r² best for all points: least squares of 2 c · p + (r² − |c|²) = |p|², which
@@ -67,7 +67,7 @@ std::optional<scenes::Sphere> recognise_sphere(const Welded& mesh, double roundi
     solid_angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
                                   x * y * z + glm::dot(a, b) * z + glm::dot(b, c) * x + glm::dot(c, a) * y);
   }
-  // The sum must be once around, up to the rounding of a sum of that many angles.
+  // The angles must add up to one full sphere, up to the rounding of a sum of that many angles.
   if (std::abs(solid_angle - 4 * std::numbers::pi) > 1e-9 * static_cast<double>(mesh.triangles.size()) + 1e-6)
     return std::nullopt;
   return scenes::Sphere{*center, std::sqrt(area / (4 * std::numbers::pi)), {}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Disk lights in files: JSON in and out, what every file must fulfil, and the rim as a polygon of kRimSides corners
-// for glTF, which has no disks.
+// Disk lights in files: reading and writing of JSON, checks for all formats, and the rim as a polygon of kRimSides
+// corners for glTF, which has no disks.
 
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"

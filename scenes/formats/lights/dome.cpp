@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes in files: where up is, a turn around it, all of the sky or half, and the name of a picture. glTF has no sky;
-// gltf/dome_extras.hpp of import/ reads one from extras.
+// Domes in files: the up direction, a rotation about it, half or all of the sky, and the name of a picture. glTF has no
+// sky; import/gltf/dome_extras.hpp reads one from extras.
 
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of light formats, and helpers that several shapes share: rims of round lights, and directions whose length
-// stays as it is when it is 1 up to rounding.
+// The table of light formats, and helpers that several shapes share: rims of round lights, and unit directions, which
+// stay unchanged if their length is 1 up to rounding.
 
 #include "scenes/formats/lights/light_formats.hpp"
 

@@ -18,7 +18,7 @@ namespace penumbra::scenes {
 struct GltfLamp {
   const char* type;
   glm::dvec3 direction{0, 0, -1}, position{0};
-  double intensity = 1;  ///< the lamp's intensity over the light's radiance
+  double intensity = 1;  ///< the lamp's intensity divided by the light's radiance
   std::pair<const char*, double> size;
   std::optional<Cone> cone = {};
 };

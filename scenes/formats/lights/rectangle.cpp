@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rectangle lights in files: a centre and two half sides. Half sides that are not at right angles span a
-// parallelogram, of which readers warn.
+// Rectangle lights in files: a centre and two half sides. Half sides that are not at right angles span a parallelogram;
+// readers then give a warning.
 
 #include "scenes/formats/lights/halves.hpp"
 
