@@ -54,7 +54,7 @@ install_packages() {
   # an error.
   local installed
   installed=$(dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n' 2>/dev/null | sed -n 's/^.i  //p') ||
-    die "cannot ask dpkg what is installed; this script is for Debian 12 and its kin"
+    die "cannot ask dpkg what is installed; this script is for Debian 12 and systems derived from it"
   while read -r package _; do
     if [[ -z $package ]]; then
       if ((--paragraphs > 0)); then continue; else break; fi

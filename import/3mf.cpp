@@ -133,7 +133,7 @@ class PackageReader {
   void read_object(const XmlText& xml, const pugi::xml_node& object, const std::string& entry) {
     const std::string id = object.attribute("id").value();
     const std::size_t number = parts_.size();
-    if (!numbers_.emplace(Target{entry, id}, number).second) xml.fail(object, "the id '{}' stands twice", id);
+    if (!numbers_.emplace(Target{entry, id}, number).second) xml.fail(object, "the id '{}' occurs twice", id);
     parts_.push_back({fmt::format("object '{}'", id), {}, {}, {}});
     for (const pugi::xml_node& mesh : children_named(object, "mesh")) read_mesh(xml, mesh, parts_[number]);
     for (const pugi::xml_node& components : children_named(object, "components")) {

@@ -50,7 +50,7 @@ class AmfReader {
  private:
   void add_part(const pugi::xml_node& node) {
     const std::string id = node.attribute("id").value();
-    if (!numbers_.emplace(id, parts_.size()).second) xml_.fail(node, "the id '{}' stands twice", id);
+    if (!numbers_.emplace(id, parts_.size()).second) xml_.fail(node, "the id '{}' occurs twice", id);
     parts_.push_back({fmt::format("{} '{}'", node.name(), id), {}, {}, {}});
   }
 

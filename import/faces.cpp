@@ -105,7 +105,7 @@ void settle_unused_vertices(mesh::ImportedMesh& mesh, const std::function<void(s
   if (mesh.soup.triangles.empty()) return;
   for (const std::uint32_t v : wild) positions[v] = positions[mesh.soup.triangles.front().front()];
   mesh.notes.push_back(
-      fmt::format("{} vertices are not finite, the first number {} (numbered from 0): no matter, since "
+      fmt::format("{} vertices are not finite, the first number {} (numbered from 0): ignored, since "
                   "no face uses them",
                   wild.size(), wild.front()));
 }

@@ -56,7 +56,7 @@ class ForeignScene {
     for (const SceneParts::Lamp& lamp : parts_.lamps) add_lamp(lamp);
     for (const SceneParts::Lens& lens : parts_.lenses) add_camera(lens);
     if (parts_.has_orthographic)
-      losses_.refuse("has an orthographic camera, which would be one with perspective (export glTF)", name);
+      losses_.refuse("has an orthographic camera, which would become a perspective camera (export glTF)", name);
     if (parts_.moves) scene_.warnings.emplace_back("the file is read at rest; its animation is ignored (export glTF)");
     if (lamps_ > 0) {
       scene_.warnings.push_back(fmt::format(
@@ -79,11 +79,11 @@ class ForeignScene {
     object.color = glm::clamp(part.color, 0.0, 1.0);
     object.material = part.material;
     if (part.has_picture) {
-      losses_.mention("has an image on its colour, which is left out: white in its place (export glTF)", object.name);
+      losses_.mention("has a colour image, which is left out and replaced by white (export glTF)", object.name);
       object.color = glm::dvec3(1);
     }
     if (part.opacity < 1 || part.has_cut)
-      losses_.refuse("lets light through, which of such files is not done: it would be solid (export glTF)",
+      losses_.refuse("lets light through, which is not supported for such files: it would be solid (export glTF)",
                      object.name);
     std::fill(scene_.soup.object.begin() + static_cast<std::ptrdiff_t>(part.first_triangle),
               scene_.soup.object.begin() + static_cast<std::ptrdiff_t>(end),
@@ -136,7 +136,8 @@ class ForeignScene {
     glm::dvec3 color = lamp.color;
     if (from_blender_ && parts_.white_is_grey && color.x == color.y && color.y == color.z) color /= 0.8;
     if (color == glm::dvec3(0)) return;
-    if (std::min({color.x, color.y, color.z}) < 0) return losses_.refuse("is a lamp that takes light away", lamp.name);
+    if (std::min({color.x, color.y, color.z}) < 0)
+      return losses_.refuse("is a lamp with a negative intensity", lamp.name);
     scenes::AreaLight light;
     if (lamp.kind != Kind::point && !(glm::length(lamp.direction) > 0))
       return losses_.refuse("is a lamp whose transform leaves it no direction", lamp.name);
@@ -162,7 +163,7 @@ class ForeignScene {
     const glm::dvec3 direction = glm::normalize(lamp.direction);
     const double quarter = std::numbers::pi / 2;
     if (!is_fbx_) {  // COLLADA has one angle, and an exponent in place of a second
-      losses_.mention("is a spot lamp, whose edge is hard: such files do not say how it falls", lamp.name);
+      losses_.mention("is a spot lamp, which gets a hard edge: such files do not describe its falloff", lamp.name);
       const double angle = glm::degrees(std::clamp(lamp.inner, 1e-3, quarter));
       return {direction, angle, angle, false};
     }
@@ -175,7 +176,7 @@ class ForeignScene {
   void add_camera(const SceneParts::Lens& lens) {
     if (!(glm::length(glm::cross(lens.forward, lens.up)) > 0) ||
         !(lens.horizontal_fov > 0 && lens.horizontal_fov < std::numbers::pi))
-      return losses_.mention("is a camera that cannot be one, and is left out", lens.name);
+      return losses_.mention("is an invalid camera, and is left out", lens.name);
     scenes::Camera camera;
     camera.name = cameras_.take(lens.name);
     camera.eye = lens.eye;

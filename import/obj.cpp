@@ -101,7 +101,7 @@ class ObjReader {
     if (keyword == "v") return vertex(rest);
     if (keyword == "f" || keyword == "fo") return face(rest);
     if (keyword == "call") {
-      fail("'call{}' takes the statements of another file in, which is not done; copy them to this place",
+      fail("'call{}' includes another file, which is not supported; copy its statements to this place",
            rest.substr(0, 80));
     }
     if (keyword == "p" || keyword == "l") return skip(keyword == "p", rest);
@@ -260,8 +260,8 @@ class ObjReader {
     if (longer_ > 0)
       mesh_.notes.push_back(fmt::format("{} vertices have 5, 8 or more numbers: the first three are taken", longer_));
     if (weightless_ > 0) {
-      mesh_.notes.push_back(fmt::format(
-          "all {} vertices have the weight 0: it is taken for none, as if they had no weight", weightless_));
+      mesh_.notes.push_back(
+          fmt::format("all {} vertices have the weight 0, which is ignored, as if they had no weight", weightless_));
     }
     if (free_form_ > 0) {
       mesh_.notes.push_back(fmt::format("{} free-form statements (curves, surfaces) skipped", free_form_));

@@ -71,7 +71,7 @@ std::string quoted(std::span<const std::string> names) {
 std::optional<std::string> solid_materials_note(std::span<const std::string> materials) {
   if (materials.empty()) return std::nullopt;
   return fmt::format(
-      "materials that let light through, which is not read of this format: {}; their surfaces are taken as solid "
+      "materials that let light through, which is not supported for this format: {}; their surfaces are taken as solid "
       "(glTF 2.0 keeps it)",
       quoted(materials));
 }

@@ -70,14 +70,14 @@ class X3dReader {
     }
     if (!lines_.empty()) mesh.notes.push_back("skipped, as they are no surfaces here: " + listed(lines_));
     if (left_out_ > 0) {
-      mesh.notes.push_back(fmt::format(
-          "{} of {} shapes are not shown by the file's own switches, levels of detail or visibility: left out",
-          left_out_, shapes_));
+      mesh.notes.push_back(
+          fmt::format("{} of {} shapes are hidden by the file's own switches, levels of detail or visibility: left out",
+                      left_out_, shapes_));
     }
     if (!missing_.empty()) {
-      mesh.notes.push_back(
-          fmt::format("{} USE of names that no node before has ({}): no surface that is shown needs them",
-                      missing_.size(), first_missing_));
+      mesh.notes.push_back(fmt::format(
+          "{} USE refer to names that no earlier node has ({}): ignored, since no visible surface needs them",
+          missing_.size(), first_missing_));
     }
     if (!ignored_.empty()) mesh.notes.push_back("ignored: " + listed(ignored_));
     const std::vector<std::string> transparent(transparent_.begin(), transparent_.end());

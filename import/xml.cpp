@@ -69,8 +69,7 @@ std::vector<pugi::xml_node> children_named(const pugi::xml_node& node, std::stri
 void note_print_unit(const pugi::xml_node& root, std::vector<std::string>& notes) {
   const std::string_view unit = root.attribute("unit").value();
   if (unit.empty() || unit == "millimeter") return;
-  std::string note =
-      fmt::format("the file's unit is '{}': positions are its numbers as they stand", mesh::printable(unit));
+  std::string note = fmt::format("the file's unit is '{}': positions keep the file's numbers", mesh::printable(unit));
   if (std::ranges::find(notes, note) == notes.end()) notes.push_back(std::move(note));
 }
 

@@ -94,7 +94,7 @@ class HostedMethod final : public visibility::Method {
  public:
   HostedMethod(MethodDescription description, std::unique_ptr<OwnMethod> own)
       : description_(std::move(description)), own_(std::move(own)) {
-    if (own_ == nullptr) throw UsageError("method {}: its function made none", description_.name);
+    if (own_ == nullptr) throw UsageError("method {}: its function returned no method", description_.name);
   }
 
   [[nodiscard]] const MethodDescription& description() const override { return description_; }
@@ -278,7 +278,7 @@ MethodDescription description_of(const OwnMethodInfo& info) {
   for (const MethodOption& option : info.options) {
     if (std::ranges::find(description.options, option.name, &visibility::OptionDescription::name) !=
         description.options.end())
-      throw UsageError("method {}: option {} is there twice", info.name, option.name);
+      throw UsageError("method {}: option {} occurs twice", info.name, option.name);
     description.options.push_back(option_of(info, option));
   }
   return description;

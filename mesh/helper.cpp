@@ -197,7 +197,7 @@ std::string HelperEnding::first_line() const {
 
 HelperStatus get_status(WireReader& from) {
   for (const char expected : kHelperMagic) {
-    if (from.get<char>() != expected) throw WireError("it does not start as an answer does");
+    if (from.get<char>() != expected) throw WireError("it does not begin like an answer");
   }
   const auto status = static_cast<HelperStatus>(from.get<std::uint8_t>());
   if (status > HelperStatus::out_of_memory) throw WireError("its status is unknown");

@@ -27,7 +27,7 @@ ImportedMesh import_mesh(const InputFile& input, const ImportLimits& limits, Glt
     mesh.sources = std::move(answer.sources);
     if (with_places) mesh.places = from.get_array<glm::dvec2>();
     if (!mesh.places.empty() && mesh.places.size() != mesh.soup.positions.size())
-      throw WireError("not every vertex has a place");
+      throw WireError("the number of texture coordinates is wrong");
     from.expect_end();
     if (mesh.soup.triangles.empty()) throw WireError("it holds no triangles");
     return mesh;

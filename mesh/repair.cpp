@@ -52,7 +52,7 @@ void require_repair() {
 
 Repaired repair(const TriangleSoup& soup, const RepairOptions& options) {
   if (!(options.weld >= 0) || !std::isfinite(options.weld)) {
-    throw UsageError("a welding distance of {} cannot be; give a length of 0 or more", options.weld);
+    throw UsageError("a welding distance of {} is invalid; give a length of 0 or more", options.weld);
   }
   WireWriter request;
   put_repair_request(request, soup, options);

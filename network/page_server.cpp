@@ -274,7 +274,7 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
     if (!has_token(view_of(request.target()), server_.options_.token))
       return "the token is missing or wrong: open the whole address that `penumbra view` printed";
     if (!is_loopback_host(host) && !is_host(host, server_.shown_host()))
-      return "the request names another host than 127.0.0.1, localhost, or the one that is served on";
+      return "the request names another host than 127.0.0.1, localhost, or the address given by --host";
     if (!is_own_origin(view_of(request[http::field::origin]), host)) return "the request comes from another page";
     return nullptr;
   }
@@ -289,7 +289,7 @@ class PageServer::State::Connection : public std::enable_shared_from_this<Connec
       return;
     }
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-      return write(say(request, http::status::method_not_allowed, "GET and HEAD alone"));
+      return write(say(request, http::status::method_not_allowed, "only GET and HEAD are supported"));
     if (path == "/") return write(page(request));
     const auto file = std::ranges::find(server_.options_.files, path, &ServedFile::path);
     if (file == server_.options_.files.end())

@@ -128,7 +128,7 @@ class TevClient::Connection {
   void send(const std::string& packet) {
     asio::async_write(socket_, asio::buffer(packet), [this](const Error& found, std::size_t) { done(found); });
     if (const std::string why = wait(kSend); !why.empty())
-      throw ResourceError("--tev {}: tev takes no picture any more ({})", address_, why);
+      throw ResourceError("--tev {}: tev no longer accepts pictures ({})", address_, why);
   }
 
  private:

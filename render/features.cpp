@@ -59,7 +59,8 @@ const char* name_of(std::uint32_t capability) {
   for (const Operations& operations : kOperations) {
     if (operations.needed_for == capability) return operations.name;
   }
-  PENUMBRA_ASSERT(false, "a shader has SPIR-V capability {}: render/features.cpp says what of Vulkan that needs",
+  PENUMBRA_ASSERT(false,
+                  "a shader has SPIR-V capability {}: add the Vulkan feature that it needs to render/features.cpp",
                   capability);
   return nullptr;
 }
@@ -119,7 +120,7 @@ std::vector<std::string> missing_for(const DeviceInfo& device, std::span<const s
 void require_features(const DeviceInfo& device, std::span<const std::uint32_t> spirv, const std::string& pass) {
   const std::vector<std::string> missing = missing_for(device, spirv);
   if (missing.empty()) return;
-  throw LacksFeature("the pass \"{}\" needs {}, which the device {} has not", pass, fmt::join(missing, ", "),
+  throw LacksFeature("the pass \"{}\" needs {}, which the device {} lacks", pass, fmt::join(missing, ", "),
                      device.name);
 }
 

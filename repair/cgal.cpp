@@ -334,9 +334,10 @@ TriangleSoup fill_holes(const TriangleSoup& soup, std::uint32_t most_edges, Repa
     repaired.source_face.resize(repaired.triangles.size(), soup.source_face[filling.neighbour]);
   }
   if (unfilled > 0) {
-    record.left.push_back(fmt::format(
-        "{} holes of at most {} edges stay open: their filling would have no area, or lie on or cross what is there",
-        unfilled, most_edges));
+    record.left.push_back(
+        fmt::format("{} holes of at most {} edges stay open: their filling would have no area, or lie on or cross "
+                    "existing surfaces",
+                    unfilled, most_edges));
   }
   return repaired;
 }

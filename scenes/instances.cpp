@@ -119,7 +119,7 @@ Scene copied(Scene scene, const Instances& instances, std::uint64_t more_bytes) 
   constexpr std::string_view kRemedy =
       "make its meshes smaller or its instances fewer, or use `render`, which keeps instances shared with a method "
       "that "
-      "leaves them be (under a dome: with --light-samples, or a dome that is \"sampled\")";
+      "supports it (under a dome: with --light-samples, or a dome that is \"sampled\")";
   if (positions >= kNone) throw ResourceError("{}: {} vertices are more than 2^32; {}", what, positions, kRemedy);
   require_memory(mesh::soup_bytes(triangles, positions) + triangles * more_bytes, what, kRemedy);
   Scene from;

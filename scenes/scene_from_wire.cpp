@@ -46,7 +46,7 @@ void check(const T& /*part*/) {}
 void check(const SharedMesh& mesh) {
   if (mesh.soup.triangles.empty()) throw WireError("a mesh of instances has no triangles");
   for (const std::size_t looks : {mesh.normals.size(), mesh.colors.size(), mesh.places.size()}) {
-    if (looks != 0 && looks != mesh.soup.positions.size()) throw WireError("not every vertex looks like something");
+    if (looks != 0 && looks != mesh.soup.positions.size()) throw WireError("the number of vertex attributes is wrong");
   }
 }
 
@@ -66,7 +66,7 @@ void check(const Picture& picture) {
 
 void check(const Scene& scene) {
   for (const std::size_t looks : {scene.looks.normals.size(), scene.looks.colors.size(), scene.looks.places.size()}) {
-    if (looks != 0 && looks != scene.soup.positions.size()) throw WireError("not every vertex looks like something");
+    if (looks != 0 && looks != scene.soup.positions.size()) throw WireError("the number of vertex attributes is wrong");
   }
   for (const std::uint32_t object : scene.soup.object) {
     if (object >= scene.objects.size()) throw WireError("a triangle belongs to no object");
@@ -77,7 +77,7 @@ void check(const Scene& scene) {
   }
   for (const AreaLight& light : scene.lights) {
     for (const std::uint32_t object : light.unshaded_by) {
-      if (object >= scene.objects.size()) throw WireError("a light is not shaded by an object that is none");
+      if (object >= scene.objects.size()) throw WireError("a light names an object that does not exist");
     }
   }
 }
@@ -99,7 +99,7 @@ struct Get {
   void operator()(T& value) const {
     const auto number = from.get<std::underlying_type_t<T>>();
     if (number > static_cast<std::underlying_type_t<T>>(std::get<T>(kLast)))
-      throw WireError("a value is none of its kind");
+      throw WireError("an enumerator is out of range");
     value = static_cast<T>(number);
   }
   template <HasFields T>
@@ -157,7 +157,7 @@ Instances get_instances(mesh::WireReader& from, const Scene& scene) {
   std::uint64_t before = 0;
   for (const Instance& instance : instances.all) {
     if (instance.mesh >= instances.meshes.size() || instance.object >= scene.objects.size())
-      throw WireError("an instance is of nothing");
+      throw WireError("an instance refers to no mesh or object");
     if (instance.soup_before < before || instance.soup_before > scene.soup.triangles.size())
       throw WireError("instances are out of order");
     before = instance.soup_before;

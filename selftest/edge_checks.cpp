@@ -102,7 +102,7 @@ Check check_wedges(const render::Device& device, const visibility::SceneFloats& 
   using namespace volumes;
   Check check{.pass = "penumbra wedges",
               .against = "the host's, and exact signs",
-              .rule = "the same volumes; planes bound the penumbra, and are the host's within the angle"};
+              .rule = "the same volumes; planes bound the penumbra, and equal the host's within the angle"};
   WedgeBuilder on_device(device, {WedgesOn::device, Construction::original, layers});
   WedgeBuilder on_host(device, {WedgesOn::host, Construction::original, layers});
   on_device.prepare_mesh(floats);
@@ -112,7 +112,7 @@ Check check_wedges(const render::Device& device, const visibility::SceneFloats& 
     compare_volumes(built.volumes, expected.volumes, check);
     check.same<std::uint64_t>(expected.edges_on_host, expected.wedges.edges.size(),
                               [] { return "the host's own edges"; });
-    check.same(built.wedges.edges.size(), built.volumes.edges.size(), [] { return "an edge a wedge"; });
+    check.same(built.wedges.edges.size(), built.volumes.edges.size(), [] { return "one wedge for each edge"; });
     tally.on_host += built.edges_on_host;
     tally.edges += expected.edges_on_host;
     const LightHull hull = light_hull(light);

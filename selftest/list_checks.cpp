@@ -89,7 +89,7 @@ float stepped(std::span<const std::uint32_t> words, std::size_t texels, std::siz
 
 Check check_penumbra_events(const render::Device& device, const Stage& stage, std::uint32_t size) {
   Check check{.pass = "penumbra events",
-              .against = "each sample's map, asked in double",
+              .against = "each sample's map, evaluated in double",
               .rule = "the share of samples, within 4 roundings of a float"};
   ListSource made(device, stage, size);
   maps::PenumbraEvents product(device, 0);

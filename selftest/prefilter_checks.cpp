@@ -103,7 +103,7 @@ maps::PrefilterOptions options_of(maps::PrefilterKind kind) {
 Check check_prefilter_tables(const render::Device& device, const Stage& stage, std::uint32_t size) {
   Check check{.pass = "prefiltered tables",
               .against = "the functions in double",
-              .rule = "digits of their own; their sums are the functions within float's error"};
+              .rule = "digits whose sums equal the functions within float's error"};
   const maps::PrefilterOptions options = options_of(maps::PrefilterKind::table);
   const Prefiltered found(device, stage, size, options);
   const std::vector<float> depths = found.maps.read();

@@ -111,7 +111,7 @@ Check check_maps(const render::Device& device, const Stage& stage, std::uint32_t
   check.against = "the triangles in double";
   const double step = step_of(device, rasteriser);
   check.rule =
-      fmt::format("covered as it is but where an edge is within {:g} texel of the centre; depth likewise", step);
+      fmt::format("the same coverage, except where an edge is within {:g} texel of the centre; depth likewise", step);
   const CentreMaps maps(device, stage, size, {0, 0}, {.layers = kLayers, .farthest = true, .rasteriser = rasteriser});
   const std::vector<float> texels = maps.read();
   const std::size_t layer_texels = maps.texel_count();
@@ -144,7 +144,7 @@ Check check_rasterisers_agree(const render::Device& device, const Stage& stage, 
   check.pass = "depth maps, Vulkan's";
   check.against = "OpenGL's";
   const double step = step_of(device, maps::Rasteriser::vulkan) + step_of(device, maps::Rasteriser::opengl);
-  check.rule = fmt::format("the same but where an edge is within {:g} texel of the centre; depth likewise", step);
+  check.rule = fmt::format("the same, except where an edge is within {:g} texel of the centre; depth likewise", step);
   const auto draw = [&](maps::Rasteriser rasteriser) {
     return CentreMaps(device, stage, size, {0, 0}, {.farthest = true, .rasteriser = rasteriser});
   };

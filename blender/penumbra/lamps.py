@@ -123,7 +123,7 @@ def write_lamp(lamp, name, matrix, glb, losses):
     factor = emission_of(lamp, losses, name)
     power = tuple(x * y for x, y in zip(power_of(lamp), factor))
     if min(power) < 0:
-        losses.refuse("is a lamp that takes light away", name)
+        losses.refuse("is a lamp with a negative power", name)
         return []
     if max(power) <= 0:
         return []

@@ -134,7 +134,7 @@ int main(int count, char** arguments) {
                           .lights = {"rectangle", "disk", "ellipse"},
                           .options = {{.name = "radius",
                                        .default_value = "8",
-                                       .help = "pixels around that are looked at, to each side",
+                                       .help = "radius of the searched neighbourhood, in pixels",
                                        .choices = {},
                                        .least = 0,
                                        .most = 64,

@@ -47,7 +47,7 @@ std::optional<scenes::AreaLight> dome_of(const tinygltf::Node& node, const Place
   }
   const auto radiance = list_of_extras(value, "radiance", 3, 0, place);
   const glm::dmat3 axes(placed.to_world);
-  if (!(glm::determinant(axes) > 0)) throw InputError("{}: its transform is a mirror, or leaves it no axes", place);
+  if (!(glm::determinant(axes) > 0)) throw InputError("{}: its transform mirrors it, or makes its axes vanish", place);
   scenes::Dome dome;
   dome.up = glm::normalize(axes[1]);
   dome.rotate = turn_of(dome.up, glm::normalize(axes[0] - glm::dot(axes[0], dome.up) * dome.up));

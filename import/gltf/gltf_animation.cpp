@@ -163,7 +163,7 @@ void pose_model(tinygltf::Model& model, double seconds, const std::vector<std::s
             target, source.target_path, source.target_node);
       }
       if (!node.matrix.empty())
-        throw InputError("{}: node {} has a matrix; what moves has translation, rotation and scale", target,
+        throw InputError("{}: node {} has a matrix; an animated node must have translation, rotation and scale", target,
                          source.target_node);
       const std::string place = fmt::format("/animations/{}/samplers/{}", a, source.sampler);
       const Channel channel = read_channel(model, element(animation.samplers, source.sampler, place, "sampler"), place,

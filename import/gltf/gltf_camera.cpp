@@ -78,13 +78,14 @@ scenes::Camera camera_of(const tinygltf::Model& model, const tinygltf::Node& nod
     if (const auto shift = shift_of(source.extras.Get("shift")))
       camera.shift = *shift;
     else
-      losses.mention("has extras \"shift\" of another tool (no two numbers), which are left out", node.name);
+      losses.mention("has extras \"shift\" of another tool (not two numbers), which are left out", node.name);
   }
   if (source.extras.IsObject() && source.extras.Has("aperture")) {
     camera.lens = lens_of(source.extras);
     if (!camera.lens)
-      losses.mention("has an extra \"aperture\" that is no length, or none \"focusDistance\" beside it, and is sharp",
-                     node.name);
+      losses.mention(
+          "has an extra \"aperture\" that is not a length, or has no \"focusDistance\" with it: everything is sharp",
+          node.name);
   }
   return camera;
 }

@@ -35,8 +35,9 @@ bool bends(const tinygltf::Model& model) {
 std::optional<scenes::Motion> motion_for(const tinygltf::Model& model, const ClipChoice& clips,
                                          const scenes::ReadOptions& options, std::vector<std::string>& warnings) {
   if (options.time && !clips.others.empty()) {
-    warnings.push_back(fmt::format("the clips {} move what {} moves, too, and are not played (--clip chooses)",
-                                   names_of_clips(model, clips.others), names_of_clips(model, clips.played)));
+    warnings.push_back(
+        fmt::format("the clips {} are not played, because they move the same properties as {} (choose with --clip)",
+                    names_of_clips(model, clips.others), names_of_clips(model, clips.played)));
   }
   try {
     return motion_of(model, clips.played);

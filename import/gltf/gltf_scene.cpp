@@ -86,13 +86,14 @@ class GltfScene {
     for (const std::string& place : compressed_)
       losses_.refuse("is compressed with KHR_draco_mesh_compression, and left out", place);
     for (const auto& [target, clip] : taken_out.pointers) {
-      const std::string what = "is moved by KHR_animation_pointer, which is not done: it stays as the file has it";
+      const std::string what =
+          "is animated by KHR_animation_pointer, which is not supported here: it keeps the value in the file";
       const bool moves = std::ranges::find(played, clip) != played.end() && changes_light(target);
       moves ? losses_.refuse(what, target) : losses_.mention(what, target);
     }
     scenes::Losses overruled;
     for (const std::string& node : taken_out.overruled)
-      overruled.mention("has a matrix together with translation, rotation or scale, of which the matrix alone is taken",
+      overruled.mention("has a matrix together with translation, rotation or scale, of which only the matrix is used",
                         node);
     overruled.warn(scene_.warnings);
     if (taken_out.no_utf8)
@@ -178,7 +179,7 @@ class GltfScene {
     }
     const std::uint64_t came = scene_.objects.size() + gone_ + bodiless_ + skipped_.points_and_lines +
                                skipped_.without_positions + skipped_.without_triangles;
-    PENUMBRA_ASSERT(there == came, "of {} primitives in the scene {} came", there, came);
+    PENUMBRA_ASSERT(there == came, "of {} primitives in the scene {} were read", there, came);
   }
 
   void add_node(const PlacedNode& placed) {
@@ -206,7 +207,7 @@ class GltfScene {
     if (!instances) return add_mesh_or_hidden(node, placed, name);
     if (node.skin >= 0) losses_.mention("has instances of a skinned mesh, all of which are where its joints are", name);
     if (instances->empty())
-      losses_.mention("has no instances (EXT_mesh_gpu_instancing), so nothing of it is there", name);
+      losses_.mention("has an empty list of instances (EXT_mesh_gpu_instancing), so it is not shown", name);
     for (std::size_t i = 0; i < instances->size(); ++i)
       add_mesh(node, {placed.number, placed.to_world * (*instances)[i]}, fmt::format("{}.{}", name, i));
   }
@@ -226,7 +227,7 @@ class GltfScene {
       p = node.skin >= 0 ? *hidden_at : glm::dvec3(placed.to_world * (back * glm::dvec4(p, 1)));
     for (scenes::AreaLight& light : std::span(scene_.lights).subspan(first_light)) {
       light.radiance = glm::dvec3(0);
-      losses_.mention("is scaled to nothing: a light that is dark", light.name);
+      losses_.mention("is scaled to zero: its light is dark", light.name);
     }
   }
 
@@ -290,9 +291,8 @@ class GltfScene {
         break;
       case Opacity::neither:
         if (is_mesh())
-          losses_.refuse(
-              "is solid as a mesh of another scene: what its alpha lets through is kept in scenes that are glTF",
-              own_name);
+          losses_.refuse("becomes solid as a mesh of another scene: its alpha is supported only in glTF scenes",
+                         own_name);
         break;
     }
     const PrimitiveVertices vertices{positions, skinned, look, placed, place, lightmap_};
@@ -331,9 +331,9 @@ class GltfScene {
     const glm::dvec3 radiance = (pictured ? radiance_of(vertices, triangles, means_) : look.radiance) *
                                 (evenly ? look.alpha.factor : 1.0);  // emission scales with coverage
     if (pictured && radiance != glm::dvec3(0))
-      losses_.mention("shines evenly, with the mean of its emissive picture where that lies on it", name);
+      losses_.mention("emits uniformly, with the mean of its emissive picture over its surface", name);
     else if (pictured)
-      note_refused_light(name, "its emissive picture is black where it lies on it");
+      note_refused_light(name, "its emissive picture is black on its surface");
     if (look.picture || !look.normals.empty() || !look.colors.empty() || look.color != glm::dvec3(1)) ++looks_left_;
     const SoupEnd before = append_triangles(scene_, vertices, std::move(triangles));
     scenes::Object object = object_of(look);
@@ -407,12 +407,12 @@ class GltfScene {
     count(skipped_.without_positions, "primitives without POSITION skipped");
     count(skipped_.without_triangles, "primitives with fewer than three vertices skipped");
     count(skipped_.leftover_indices, "indices at the end of primitives skipped: they make no whole triangle");
-    count(emissive_, "emissive objects are no lights here: those are the scene's");
+    count(emissive_, "emissive objects are not lights here: lights come from the scene");
     if (purpose_ == Purpose::mesh) {
       count(looks_left_,
             "objects lose their pictures, colours and normals: a mesh of another scene has the colour that is "
             "said there");
-      count(lamps_left_, "lamps and cameras left out: those are the scene's");
+      count(lamps_left_, "lamps and cameras left out: these come from the scene");
     }
   }
 

@@ -219,7 +219,7 @@ std::vector<glm::dvec2> SurfaceReader::places_of(const Owner& owner, const tinyg
   };
   if (!numbers) {
     // glTF 2.0 does not define the appearance in this case.
-    lose(fmt::format("has no TEXCOORD_{}, by which its picture lies on it: one texel is everywhere", set));
+    lose(fmt::format("has no TEXCOORD_{} to map its picture: one texel covers all of it", set));
     return std::vector<glm::dvec2>(owner.vertices, transform.offset);
   }
   std::vector<glm::dvec2> places;
@@ -232,7 +232,8 @@ std::vector<glm::dvec2> SurfaceReader::places_of(const Owner& owner, const tinyg
     }
     places.push_back(place);
   }
-  if (!finite) lose(fmt::format("has numbers in TEXCOORD_{} that are not finite: its picture lies wrong there", set));
+  if (!finite)
+    lose(fmt::format("has numbers in TEXCOORD_{} that are not finite: its picture is mapped wrongly there", set));
   return places;
 }
 
@@ -277,7 +278,7 @@ void SurfaceReader::mention_unlike(const Owner& owner, const std::string& here, 
   if (material.extensions.contains("KHR_materials_unlit"))
     losses_.mention("is unlit in the file; every surface is lit here", owner.object);
   else if (look.radiance == glm::dvec3(0) && is_from_blender(model_) && has_no_surface(material))
-    losses_.mention("has no base colour in the file and is white: Blender exports that of Principled BSDF alone",
+    losses_.mention("has no base colour in the file and is white: Blender exports only that of Principled BSDF",
                     owner.object);
   else if (!material.extensions.contains(kSpecularGlossiness) && look.color != glm::dvec3(0) &&
            (surface.metallicRoughnessTexture.index >= 0 || surface.metallicFactor > 0))

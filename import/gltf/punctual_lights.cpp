@@ -137,8 +137,8 @@ double PunctualLights::divisor_of(const std::string& type) {
 void PunctualLights::add_warnings(std::vector<std::string>& warnings) const {
   if (in_lumens_ > 0) {
     warnings.push_back(
-        fmt::format("{} lamps are in lumens, {} to a watt, as Blender's exporter writes them; of one exported with "
-                    "Lighting Mode Unitless say --lumens-per-watt 1",
+        fmt::format("{} lamps are in lumens, {} per watt, as Blender's exporter writes them; for a file exported with "
+                    "Lighting Mode Unitless use --lumens-per-watt 1",
                     in_lumens_, kBlendersLumensPerWatt));
   }
   if (in_watts_ > 0) {
@@ -162,7 +162,8 @@ void PunctualLights::add_warnings(std::vector<std::string>& warnings) const {
         fmt::format("{} sun lamps have no size in the file (extras \"angle\"); taken as {} degrees wide (--sun-angle)",
                     without_angle_, scenes::kSunAngle));
   }
-  if (ranges_ > 0) warnings.push_back(fmt::format("the range of {} lamps ignored: light has no end", ranges_));
+  if (ranges_ > 0)
+    warnings.push_back(fmt::format("the range of {} lamps is ignored: light does not end at a distance", ranges_));
 }
 
 }  // namespace penumbra::import

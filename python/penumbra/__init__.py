@@ -92,7 +92,7 @@ class Scene:
         """Builds a scene from a dict with the content of a penumbra-scene/1 file. A mesh may have arrays "vertices" (V,
         3) and "faces" (F, 3) in place of a file or a shape. Names of files are relative to `folder`."""
         if not isinstance(scene, _Mapping):
-            raise UsageError(f"Scene.from_dict({_arguments.shown(scene)}): expected a dict as a penumbra-scene/1 file has it")
+            raise UsageError(f"Scene.from_dict({_arguments.shown(scene)}): expected a dict with the content of a penumbra-scene/1 file")
         scene = dict(scene)
         scene.setdefault("format", "penumbra-scene/1")
         arrays = []
@@ -237,7 +237,7 @@ def _without_arrays(index, mesh, arrays):
     if not isinstance(mesh, _Mapping) or not ("vertices" in mesh or "faces" in mesh):
         return mesh
     if not ("vertices" in mesh and "faces" in mesh):
-        raise UsageError(f"/meshes/{index}: vertices and faces come together")
+        raise UsageError(f"/meshes/{index}: expected both vertices and faces")
     mesh = dict(mesh)
     vertices = _arguments.rows(f"/meshes/{index}/vertices", mesh.pop("vertices"))
     arrays.append((index, vertices, _arguments.faces(f"/meshes/{index}/faces", mesh.pop("faces"))))

@@ -34,7 +34,7 @@ const char* error_name(EGLint error) {
     case EGL_BAD_ALLOC:
       return "out of resources";
     case EGL_BAD_MATCH:
-      return "not what the driver can do";
+      return "not supported by the driver";
     case EGL_BAD_ACCESS:
       return "in use by another thread";
     case EGL_CONTEXT_LOST:
@@ -154,7 +154,7 @@ std::unique_ptr<Context::State> open(const DisplayChoice& choice, std::uint32_t 
   try {
     const Current current(*state);
     describe(info, choice.software);
-    current.check("asking what it is");
+    current.check("reading its description");
   } catch (const ResourceError& error) {
     info.refusals.emplace_back(error.what());
   }

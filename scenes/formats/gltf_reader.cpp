@@ -72,7 +72,7 @@ Scene read_by_helper(const mesh::InputFile& input, bool has_folder, const ReadOp
     if (options.lightmap != nullptr) {
       options.lightmap->places = from.get_array<glm::dvec2>();
       if (options.lightmap->places.size() != scene.soup.positions.size())
-        throw mesh::WireError("not every vertex has a place");
+        throw mesh::WireError("the number of lightmap coordinates is wrong");
     }
     if (options.instances != nullptr) *options.instances = get_instances(from, scene);
     read_skies(input.name, has_folder, options, scene);

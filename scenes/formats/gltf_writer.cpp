@@ -360,7 +360,7 @@ void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file,
       });
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     if (bodies[i] > 1)
-      notes.push_back(fmt::format("light \"{}\": each of the {} meshes that are its body is a light of its own in glTF",
+      notes.push_back(fmt::format("light \"{}\": each of the {} meshes of its body becomes a separate light in glTF",
                                   scene.lights[i].name, bodies[i]));
     if (bodies[i] > 0) continue;
     if (std::holds_alternative<Dome>(scene.lights[i].shape)) {
@@ -374,8 +374,7 @@ void write_glb(const Scene& scene, const Instances& instances, AtomicFile& file,
   }
   for (const AreaLight& light : scene.lights) {
     if (!light.texture || std::holds_alternative<Dome>(light.shape)) continue;
-    notes.push_back(
-        fmt::format("light \"{}\": its texture is left out; its mean colour stands in its place", light.name));
+    notes.push_back(fmt::format("light \"{}\": its texture is replaced by its mean colour", light.name));
   }
   for (const Camera& camera : scene.cameras) {
     glb.add_camera(camera, camera.aspect.value_or(static_cast<double>(scene.width) / scene.height));

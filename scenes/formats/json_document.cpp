@@ -56,7 +56,7 @@ class DocumentBuilder : public nlohmann::json_sax<json> {
   bool key(string_t& name) override {
     refuse_zero(name, "key", open_.size() - 1);
     if (open_.back().container->contains(name)) {
-      throw InputError("{}: the key \"{}\" stands twice; remove one", place_under(open_.size() - 1).str(), name);
+      throw InputError("{}: the key \"{}\" occurs twice; remove one", place_under(open_.size() - 1).str(), name);
     }
     open_.back().key = std::move(name);
     return true;

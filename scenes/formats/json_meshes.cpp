@@ -191,7 +191,7 @@ mesh::ShapeSize size_of_mesh(const json& mesh, const Place& place, bool shared) 
 const json& transform_of(const json& instance, const Place& place) {
   if (!instance.is_object() || !instance.contains("transform")) return instance;
   if (instance.size() > 1)
-    throw InputError("{}: the key \"transform\" stands alone; found {} keys", place.str(), instance.size());
+    throw InputError("{}: expected only the key \"transform\"; found {} keys", place.str(), instance.size());
   return instance["transform"];
 }
 
@@ -261,11 +261,11 @@ void require_room_for_meshes(const json& meshes, const Place& place, bool shared
     number_of_largest = i;
   }
   at_place(place, [&] {
-    require_memory(most + copies * bytes_per_copy,
-                   fmt::format("a scene of {} triangles ({} of them in /meshes/{}, the largest of {}{})", all.triangles,
-                               largest.triangles, number_of_largest, meshes.size(),
-                               copies > 0 ? "; instances are each as a copy" : ""),
-                   copies > 0 ? "make its meshes smaller or its instances fewer" : "make its meshes smaller");
+    require_memory(
+        most + copies * bytes_per_copy,
+        fmt::format("a scene of {} triangles ({} of them in /meshes/{}, the largest of {}{})", all.triangles,
+                    largest.triangles, number_of_largest, meshes.size(), copies > 0 ? "; each instance is a copy" : ""),
+        copies > 0 ? "make its meshes smaller or its instances fewer" : "make its meshes smaller");
   });
 }
 

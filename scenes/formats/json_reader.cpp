@@ -59,8 +59,9 @@ Camera read_camera(const json& value, const Place& place, std::string fallback_n
     camera.lens = {value["aperture"].get<double>(),
                    value.value("focusDistance", glm::distance(camera.eye, camera.target))};
   } else if (value.contains("focusDistance")) {
-    throw InputError("{}: everything is sharp without an aperture; expected \"aperture\", the lens's radius, beside it",
-                     (place / "focusDistance").str());
+    throw InputError(
+        "{}: everything is sharp without an aperture; expected \"aperture\", the lens's radius, in the same camera",
+        (place / "focusDistance").str());
   }
   check_camera(camera, place.str());
   return camera;
@@ -87,7 +88,7 @@ std::vector<Camera> read_cameras(const json& document, const Place& root, std::v
 
 Texture read_light_texture(const json& value, const Place& place, const ReadOptions& options, Scene& scene) {
   if (!value.contains("rectangle")) {
-    throw InputError("{}: only a \"rectangle\" light can have a texture; take it away or make the light a rectangle",
+    throw InputError("{}: only a \"rectangle\" light can have a texture; remove it or make the light a rectangle",
                      place.str());
   }
   const std::string name = value["texture"].get<std::string>();
@@ -181,7 +182,7 @@ std::uint32_t named_body(const json& value, const Place& place, const std::vecto
   const std::uint32_t light = named_light(value, place, lights);
   const auto kind = kind_of(lights[light].shape);
   if (kind && traits_of(*kind).place == LightPlace::directions) {
-    throw InputError("{}: the light \"{}\" is a {}, infinitely far away, so no mesh is its body; take \"emits\" away",
+    throw InputError("{}: the light \"{}\" is a {}, infinitely far away, so no mesh is its body; remove \"emits\"",
                      place.str(), lights[light].name, traits_of(*kind).name);
   }
   return light;

@@ -127,13 +127,13 @@ void note_entries(const Scene& scene, std::span<const Entry> entries, Notes& not
     if (objects.size() > 1) merged += objects.size();
   }
   if (ranges > scene.objects.size())
-    notes.push_back(fmt::format("{} objects became {} meshes, because their triangles do not stand together",
+    notes.push_back(fmt::format("{} objects became {} meshes, because their triangles are not contiguous",
                                 scene.objects.size(), ranges));
   if (merged > 0)
     notes.push_back(fmt::format("{} objects that share meshes became instances, which have no names of their own{}",
                                 merged, in_order ? "" : "; their triangles are numbered in another order"));
   if (!precise)
-    notes.push_back("positions of instances are sums in another order, and may differ in the last bit of a double");
+    notes.push_back("positions of instances are summed in another order, and may differ in the last bit of a double");
 }
 
 /// Writes the matrix by rows.

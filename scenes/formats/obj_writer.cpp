@@ -20,7 +20,7 @@ void write_obj(const Scene& scene, AtomicFile& file, Losses& losses, Notes& note
   text.flush();
   for (const Object& object : scene.objects) {
     if (!object.casts_shadow || !object.receives_shadow || object.lit_by)
-      losses.mention("casts, receives or is lit otherwise than all else, of which OBJ says nothing", object.name);
+      losses.mention("has its own settings for shadows or lights, which OBJ cannot express", object.name);
   }
   notes.push_back(
       fmt::format("OBJ holds no lights and cameras; left out: {} and {}", scene.lights.size(), scene.cameras.size()));

@@ -54,8 +54,8 @@ void sample_added_domes(Scene& scene, const Instances& instances, StudioWish& st
   if (instances.empty() || triangles <= kFewCopies || std::ranges::all_of(studio.lights, has_place)) return;
   studio.sampled_domes = true;
   scene.warnings.push_back(fmt::format(
-      "the added dome is `sampled`: methods that may choose count its light samples, since for exact areas every "
-      "instance would be a copy, {} triangles in all (--method edge-scatter:rows=exact asks for areas)",
+      "the added dome is `sampled`: methods that support both use light samples, since for exact areas every "
+      "instance would be a copy, {} triangles in all (--method edge-scatter:rows=exact computes areas)",
       triangles));
 }
 

@@ -103,14 +103,14 @@ ObjectsWith objects_with(const Scene& scene, const Instances& instances) {
 void lose_looks(const Scene& scene, const Instances& instances, const std::string& extension, Losses& losses) {
   const ObjectsWith with = objects_with(scene, instances);
   const std::string solid =
-      fmt::format("lets light through, for which {} has no place (.glb has): it would be solid", extension);
+      fmt::format("lets light through, which {} cannot store (.glb can): it would be solid", extension);
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
     if (object.alpha.mode != Alpha::Mode::opaque) losses.refuse(solid, object.name);
     if (object.picture) losses.mention("has a picture, which is left out", object.name);
     if (with.colors[i]) losses.mention("has colours of vertices, which are left out", object.name);
     if (with.normals[i])
-      losses.mention("has normals of vertices, which are left out: its shading will be by facets", object.name);
+      losses.mention("has normals of vertices, which are left out: it will be shaded by facets", object.name);
   }
 }
 
@@ -156,7 +156,7 @@ std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::
     if (scene.lights[i].texture) write_texture(*scene.lights[i].texture, texture_file(file, i));
   }
   if (scene.motion)
-    notes.push_back(fmt::format("its animation from {} s to {} s is left out; it is written as it rests",
+    notes.push_back(fmt::format("its animation from {} s to {} s is left out; it is written at rest",
                                 scene.motion->first, scene.motion->last));
   output.commit();
   losses.warn(notes);

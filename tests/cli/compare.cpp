@@ -339,7 +339,7 @@ TEST_F(Compare, GroupsLeaveOutWhatCannotDoTheLight) {
       {"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "all", "--light-samples", "16"});
   EXPECT_EQ(all.code, 0) << all.err;
   EXPECT_THAT(all.err, HasSubstr("view-sample-planar is left out"));
-  EXPECT_THAT(all.err, HasSubstr("left out: maps see a sphere as up to 54 disks"));
+  EXPECT_THAT(all.err, HasSubstr("left out: image-based methods replace a sphere by up to 54 disks"));
   const Outcome image = run(
       {"compare", path("bulb.json"), "-o", path("dir"), "--runs", "1", "--methods", "pcss:size=64", "--size", "8x8"});
   EXPECT_EQ(image.code, 0) << image.err;

@@ -131,7 +131,8 @@ TEST_F(DepthOfField, WhatIsInFocusIsSharp) {
   EXPECT_NE(blurred.floats.at("A"), without.floats.at("A"));
   const Outcome few = run({"render", path("scene.json"), "-o", path("one.exr")});
   EXPECT_EQ(few.code, 0);
-  EXPECT_THAT(few.err, HasSubstr("has an aperture: a pixel's one view sample looks through the lens's middle"));
+  EXPECT_THAT(few.err,
+              HasSubstr("has an aperture: with one view sample per pixel, it looks through the lens's middle"));
   const ExrFile one = read_exr(path("one.exr"));
   for (const char* name : {"P.X", "P.Y", "N.Z", "Z", "object.X"}) {
     EXPECT_EQ(blurred.floats.at(name), one.floats.at(name)) << name;
@@ -196,7 +197,7 @@ TEST_F(DepthOfField, WhatCannotBeMeantIsRefused) {
   refused(with_four({"--aperture", "0", "--focus-distance", "1"}), "there is no lens with --aperture 0");
   refused(with_four({"--aperture", "0.1", "--focus-distance", "2", "--bits", path("b.bits")}), "--bits");
   refused(with_four({"--aperture", "0.1", "--focus-distance", "2", "--method", "soft-volume"}),
-          "has a lens with an aperture; methods that draw shadow volumes look from a point", 3);
+          "has a lens with an aperture; methods that draw shadow volumes need a pinhole camera", 3);
   write_scene({-1, 1, -1, 1, 2}, {{"focusDistance", 2}});
   refused({}, "everything is sharp without an aperture", 3);
   write_scene({-1, 1, -1, 1, 2}, {{"aperture", -0.5}});

@@ -52,7 +52,8 @@ TEST_F(FarLights, AStarIsASun) {
   const Rendered star = render(fmt::format(R"({{"name": "sol", "sphere": {{"center": [{}, {}, 0], "radius": {}}}}})",
                                            0.6 * distance, 0.8 * distance, radius));
   EXPECT_EQ(star.method, "exact");
-  EXPECT_THAT(star.err, HasSubstr("\"sol\": too far away, too large or too small beside the scene for edge-scatter"));
+  EXPECT_THAT(star.err,
+              HasSubstr("\"sol\": too far away, or too large or too small relative to the scene, for edge-scatter"));
   const Rendered sun =
       render(fmt::format(R"({{"name": "sol", "sun": {{"direction": [-0.6, -0.8, 0], "angle": {}}}}})", angle));
   EXPECT_EQ(sun.method, "edge-scatter");

@@ -262,7 +262,7 @@ TEST_F(Frames, OfALampThatIsHidden) {
   write("scene.glb", gltf.glb());
   const Outcome outcome = render({"--frames", "5-15x5", "-o", path("s.##.exr"), "--light", "Lamp", "--light", "B"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("'Lamp' is scaled to nothing"));
+  EXPECT_THAT(outcome.err, HasSubstr("'Lamp' is scaled to zero"));
   const ExrFile shown = read_exr(path("s.05.exr")), hidden = read_exr(path("s.15.exr"));
   const auto greatest = [](const std::vector<float>& all) { return *std::ranges::max_element(all); };
   ASSERT_EQ(shown.floats.size(), hidden.floats.size());

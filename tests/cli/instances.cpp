@@ -307,7 +307,8 @@ TEST_F(Instances, AreCopiedForMapsThatLookTwice) {
     EXPECT_EQ(outcome.code, 2);
     return outcome.err;
   };
-  EXPECT_THAT(refused({"--method", "pcss"}), HasSubstr("--instances shared: pcss takes suns and lights in one plane"));
+  EXPECT_THAT(refused({"--method", "pcss"}),
+              HasSubstr("--instances shared: pcss supports only suns and lights in one plane"));
   EXPECT_THAT(refused({"--method", "vssm"}), HasSubstr("--instances shared: vssm looks at more"));
   EXPECT_THAT(refused({"--method", "shadow-map", "--method-option", "fit=view"}),
               HasSubstr("shadow-map looks at more"));
@@ -505,7 +506,8 @@ TEST_F(Instances, WhatCannotBeMeantIsRefused) {
   EXPECT_THAT(refused(json::array({still}), still), HasSubstr("exclude one another"));
   EXPECT_THAT(refused(json::array(), nullptr), HasSubstr("/meshes/1/instances"));
   EXPECT_THAT(refused(json::array({still, {{"scale", 0}}}), nullptr), HasSubstr("/meshes/1/instances/1"));
-  EXPECT_THAT(refused(json::array({{{"transform", still}, {"scale", 2}}}), nullptr), HasSubstr("stands alone"));
+  EXPECT_THAT(refused(json::array({{{"transform", still}, {"scale", 2}}}), nullptr),
+              HasSubstr("expected only the key"));
   EXPECT_THAT(refused(json::array({{{"turn", 2}}}), nullptr), HasSubstr("turn"));
 }
 

@@ -105,7 +105,7 @@ TEST_F(Moments, AreRefusedWhereThereIsNoMean) {
   write("small.json", scene_text_with("/size", "[24, 16]"));
   const Outcome other = render("now.json", {"--moment", path("small.json")});
   EXPECT_EQ(other.code, 3);
-  EXPECT_THAT(other.err, HasSubstr("a picture of 24x16 pixels, where SCENE's has 48x32; --size"));
+  EXPECT_THAT(other.err, HasSubstr("a picture of 24x16 pixels, but SCENE's has 48x32; set one size"));
   EXPECT_EQ(render("now.json", {"--moment", path("small.json"), "--size", "12x8"}).code, 0);
   EXPECT_FALSE(std::filesystem::exists(path("x.bits")));
 }

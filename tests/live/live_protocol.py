@@ -317,7 +317,7 @@ def check_forest(folder):
         same(png_pixels(frame["files"][0]), png, "the picture under the moved light, by `render` of the saved scene")
         client.send(type="method", slot="a", entry="vssm", stamp=2)
         said = client.until(lambda message: message["type"] == "say" and message["level"] == "error")["text"]
-        expect("vssm looks at more than lies between" in said, f"a method that needs copies: {said}")
+        expect("vssm needs more than the triangles between" in said, f"a method that needs copies: {said}")
         status, _, text = server.get("/space/meshes")
         expect(status >= 400 and b"instances" in text, f"the 3D view: {status} {text[:200]}")
         client.send(type="method", slot="a", entry="view-sample", stamp=3)

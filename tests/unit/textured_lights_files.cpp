@@ -176,7 +176,7 @@ TEST_F(TexturedLightFiles, GlbKeepsTheMeanColourAndSaysSo) {
   const scenes::Scene before = read(exr(2, 1, {"R", "G", "B"}, {0, 0.5f}), "t.exr");
   const std::vector<std::string> losses = scenes::write_scene(before, folder_ / "copy.glb");
   ASSERT_EQ(losses.size(), 1u);
-  EXPECT_EQ(losses[0], "light \"key\": its texture is left out; its mean colour stands in its place");
+  EXPECT_EQ(losses[0], "light \"key\": its texture is replaced by its mean colour");
   const scenes::Scene after = scenes::read_scene(folder_ / "copy.glb");
   ASSERT_EQ(after.lights.size(), 1u);
   EXPECT_FALSE(after.lights[0].texture.has_value());

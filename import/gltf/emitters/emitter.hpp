@@ -24,8 +24,8 @@ struct Emitter {
 
 /// Reason, for messages, why an emitter that hides parts of itself cannot be a light.
 inline constexpr const char* kHidesItself =
-    "is an emitter with parts that stand in one another's light, which its own mesh would not hide: it would be too "
-    "bright (make its parts objects of their own)";
+    "is an emitter with parts that shadow one another; a light's own mesh casts no shadow of it, so it would be too "
+    "bright (make its parts separate objects)";
 
 /// Meshes with more pieces are refused: each piece costs as much as a light.
 inline constexpr std::size_t kMostPieces = 1024;

@@ -112,7 +112,7 @@ TEST_F(ForeignScenes, EmissiveMeshesAreLights) {
   bent.replace(bent.find("1 1 0 0 1 0"), 5, "1 1 1");  // into two triangles, of which each shines at the other's back
   const auto file = write("bent.dae", bent);
   EXPECT_THAT(test::input_error([&] { read_scene(file); }),
-              HasSubstr("'Card' is an emitter with parts that stand in one another's light"));
+              HasSubstr("'Card' is an emitter with parts that shadow one another"));
   ReadOptions lenient;
   lenient.lenient = true;
   const Scene bright = read_scene(file, lenient);
@@ -182,9 +182,9 @@ TEST_F(ForeignScenes, SolidMaterialsOfMeshesAreNamed) {
   const auto notes = [&](const char* name, const std::string& text) {
     return mesh::import_mesh(write(name, text)).notes;
   };
-  EXPECT_THAT(
-      notes("a.obj", corners + "usemtl Glass\nf 1 2 3\nusemtl Leaf\nf 3 2 1\nusemtl Wood\nf 1 3 2\n"),
-      Contains(HasSubstr("materials that let light through, which is not read of this format: 'Glass', 'Leaf';")));
+  EXPECT_THAT(notes("a.obj", corners + "usemtl Glass\nf 1 2 3\nusemtl Leaf\nf 3 2 1\nusemtl Wood\nf 1 3 2\n"),
+              Contains(HasSubstr(
+                  "materials that let light through, which is not supported for this format: 'Glass', 'Leaf';")));
   EXPECT_THAT(notes("c.obj", "mtllib .\nmtllib nowhere.mtl\n" + corners + "usemtl Glass\nf 1 2 3\n"),
               Contains(HasSubstr("'Glass'")))
       << "folders and files that are not there are no libraries";

@@ -125,7 +125,7 @@ TEST_F(GltfAsWritten, MatricesBesideParts) {
   const Scene scene = read(gltf);
   EXPECT_EQ(scene.soup.positions[1], glm::dvec3(6, 0, 0));
   EXPECT_THAT(scene.warnings, Contains("'Body', 'Camera' has a matrix together with translation, rotation or scale, "
-                                       "of which the matrix alone is taken"));
+                                       "of which only the matrix is used"));
 }
 
 TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
@@ -283,7 +283,7 @@ TEST_F(GltfAsWritten, InstancesOfANode) {
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes") = {{"_ID", gltf.add_floats("SCALAR", {7, 8, 9})}};
   EXPECT_EQ(read(gltf).objects.size(), 4u) << "all three where the node is";
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing") = json::object();
-  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has no instances")));
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has an empty list of instances")));
 }
 
 /// KHR_node_visibility: neither the node nor what is below it; joints and cameras are no less where they are.

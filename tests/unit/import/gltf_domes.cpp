@@ -105,7 +105,7 @@ TEST_F(GltfReader, DomesThatAreNoneAreRefused) {
   expect({{"radiance", {1, 1, 1}}, {"image", 3}}, "/image: expected the name of a file");
   Gltf mirrored = with_dome({{"radiance", {1, 1, 1}}});
   mirrored.at("/nodes/0")["scale"] = {-1, 1, 1};
-  EXPECT_THAT(refusal(mirrored), HasSubstr("/nodes/0/extras/dome: its transform is a mirror"));
+  EXPECT_THAT(refusal(mirrored), HasSubstr("/nodes/0/extras/dome: its transform mirrors it"));
   Gltf foreign = with_dome("St Paul's");
   EXPECT_TRUE(read(foreign).lights.empty()) << "another tool's";
 }

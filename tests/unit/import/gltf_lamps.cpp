@@ -132,7 +132,7 @@ TEST_F(GltfReader, LampsOfOlderBlendersAreInWatts) {
     Gltf gltf = with_lamp(lamp);
     gltf.at("/asset/generator") = "Khronos glTF Blender I/O v" + version;
     const Scene scene = read(gltf);
-    EXPECT_THAT(scene.warnings, Contains(HasSubstr(version == "3.4.36" ? "683 to a watt" : "are in watts")));
+    EXPECT_THAT(scene.warnings, Contains(HasSubstr(version == "3.4.36" ? "683 per watt" : "are in watts")));
     return scene.lights.at(0).radiance.x;
   };
   const json point = {{"type", "point"}, {"intensity", 100}, {"extras", {{"radius", 1}}}};

@@ -265,7 +265,7 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   // Black texels give no light.
   Gltf black = lit({0, 1, 0.5f, 1, 0, 0, 0.5f, 0});
   black.at("/materials/1/emissiveFactor") = {0, 1, 1};
-  EXPECT_THAT(refusal(black), HasSubstr("'Lamp' (its emissive picture is black where it lies on it)"));
+  EXPECT_THAT(refusal(black), HasSubstr("'Lamp' (its emissive picture is black on its surface)"));
 
   Gltf unreadable = lit(whole);
   unreadable.at("/images/0")["bufferView"] = 0;

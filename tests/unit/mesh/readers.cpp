@@ -320,8 +320,8 @@ TEST_F(MeshReaders, ThreeDsMaterialsThatLetLightThroughAreNamed) {
     const std::string mesh = chunk_3ds(0x4100, chunk_3ds(0x4110, positions) + chunk_3ds(0x4120, faces));
     return chunk_3ds(0x4D4D, chunk_3ds(0x3D3D, material + chunk_3ds(0x4000, std::string("a\0", 2) + mesh)));
   };
-  const auto named =
-      testing::Contains(HasSubstr("materials that let light through, which is not read of this format: 'glass';"));
+  const auto named = testing::Contains(
+      HasSubstr("materials that let light through, which is not supported for this format: 'glass';"));
   EXPECT_THAT(read("half.3ds", file(50, true)).notes, named);
   EXPECT_THAT(read("clear.3ds", file(100, true)).notes, named);
   EXPECT_THAT(read("solid.3ds", file(0, true)).notes, testing::Not(named));

@@ -147,7 +147,7 @@ TEST_F(XmlReaders, ThreeMfRefusals) {
     return penumbra::test::input_error([&] { import_mesh(path); });
   };
   EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"9\"/>")), HasSubstr("no object with the id '9'"));
-  EXPECT_THAT(refusal(model(object("1") + object("1"), "")), HasSubstr("line 2: the id '1' stands twice"));
+  EXPECT_THAT(refusal(model(object("1") + object("1"), "")), HasSubstr("line 2: the id '1' occurs twice"));
   EXPECT_THAT(refusal(model(object("1"), "<item objectid=\"1\" transform=\"1 2 3\"/>")),
               HasSubstr("number 4 of the transform"));
   EXPECT_THAT(refusal(model("", "<item p:path=\"/x.model\" objectid=\"1\"/>")), HasSubstr("x.model: no such entry"));
@@ -255,7 +255,7 @@ TEST_F(XmlReaders, X3dPrototypesHaveNamesOfTheirOwn) {
   const ImportedMesh mesh =
       read("scopes.x3d", x3d("<Group DEF=\"A\">" + triangle_shape() + "</Group>" + outer + "<Group USE=\"A\"/>"));
   EXPECT_EQ(mesh.soup.triangles.size(), 2u);
-  EXPECT_THAT(mesh.notes, Not(Contains(HasSubstr("USE of names"))));
+  EXPECT_THAT(mesh.notes, Not(Contains(HasSubstr("USE refer to names"))));
   expect_refused("outside.x3d", x3d(outer + "\n<Group USE=\"B\"/>"), {"line 4", "no node 'B' before"});
 }
 

@@ -58,7 +58,7 @@ TEST(GlbWriter, NamesLossesOfGltf) {
   const TemporaryFolder folder;
   const char* const linked = "is lit only by some lights, which glTF cannot express";
   const char* const shading = "'bulb' has shadows only of some meshes, which glTF cannot express";
-  for (const char* message : {linked, shading, "--lenient writes all the same"})
+  for (const char* message : {linked, shading, "--lenient writes it nevertheless"})
     expect_error(ExitCode::input, message, [&] { write_scene(read_text(kEverything), folder / "scene.glb"); });
   EXPECT_TRUE(folder.names().empty());
   const auto notes = write_scene(read_text(kEverything), folder / "scene.glb", {.lenient = true});

@@ -44,7 +44,7 @@ TEST(Method, RefusesLightsItCannotDoAndSaysWhichItCan) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what())
-                  .find("light \"bulb\" is a sphere; method pcss, as asked for, can do: rectangle, disk"),
+                  .find("light \"bulb\" is a sphere; method pcss, with these options, supports: rectangle, disk"),
               std::string::npos);
   }
 }

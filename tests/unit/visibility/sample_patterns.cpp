@@ -164,7 +164,7 @@ TEST(SamplePatterns, RefusesCountsItCannotDo) {
   try {
     samples(0, SamplePattern::rows);
   } catch (const UsageError& error) {
-    EXPECT_STREQ(error.what(), "light samples: 0 asked for; 1 to 4096 can be done");
+    EXPECT_STREQ(error.what(), "light samples: 0 requested; 1 to 4096 are possible");
   }
 }
 
