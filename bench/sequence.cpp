@@ -95,7 +95,7 @@ void move_nodes(Glb& glb, std::uint32_t frames, float reach, Moves&& moves) {
   json animation = {{"samplers", {{{"input", input}, {"output", output}}}}, {"channels", json::array()}};
   for (json& root : document["scenes"][0]["nodes"]) {
     if (!moves(document["nodes"][root.get<std::size_t>()])) continue;
-    document["nodes"].push_back({{"name", "Way"}, {"children", {root}}});
+    document["nodes"].push_back({{"name", "Motion"}, {"children", {root}}});
     root = document["nodes"].size() - 1;
     animation["channels"].push_back({{"sampler", 0}, {"target", {{"node", root}, {"path", "translation"}}}});
   }

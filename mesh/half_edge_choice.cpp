@@ -107,8 +107,8 @@ class Winder {
       if (!pair) continue;
       const std::uint32_t other = (*pair)[(*pair)[0].triangle == t ? 1 : 0].triangle;
       if (held_.patch[other] == kNotHeld) continue;
-      const bool same_way = (*pair)[0].reversed == (*pair)[1].reversed;
-      const bool turn = held_.turn[other] != same_way;
+      const bool same_direction = (*pair)[0].reversed == (*pair)[1].reversed;
+      const bool turn = held_.turn[other] != same_direction;
       if (wanted && *wanted != turn) return std::nullopt;
       wanted = turn;
     }

@@ -144,13 +144,13 @@ bool meets_before_light(const glm::vec3& p, const PlanePoint& l, const std::arra
   if (side_p == Side::on) return false;
   const ExactVector u = difference(light.center_u, light.center), v = difference(light.center_v, light.center);
   const Exact s(l.st.x), t(l.st.y);
-  const auto way_from = [&](const glm::vec3& x) {
+  const auto segment_from = [&](const glm::vec3& x) {
     const ExactVector d = difference(light.center, x);
     return ExactVector{d.x + s * u.x + t * v.x, d.y + s * u.y + t * v.y, d.z + s * u.z + t * v.z};
   };
-  const int side_l = sign_of_determinant(difference(b, a), difference(c, a), way_from(a));
+  const int side_l = sign_of_determinant(difference(b, a), difference(c, a), segment_from(a));
   if (side_l * static_cast<int>(side_p) >= 0) return false;
-  const ExactVector toward = way_from(p);
+  const ExactVector toward = segment_from(p);
   const std::array d{difference(a, p), difference(b, p), difference(c, p)};
   int first = 0;
   for (std::size_t i = 0; i < 3; ++i) {

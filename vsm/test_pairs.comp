@@ -140,14 +140,14 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
   const vec3 ab = cross(seen.A, seen.D1), bc = cross(seen.A + seen.D1, seen.D2 - seen.D1), ca = cross(seen.D2, seen.A);
   const float det = dot(ab, seen.D2);
   const vec3 error_f = error_of_edges(seen, sizes);
-  const bool one_way = has_side(det, seen, sizes);
+  const bool sided = has_side(det, seen, sizes);
 
   // An edge with the whole light on its outer side, for either orientation of the triangle, ends the test.
   const vec3 middle = vec3(ab.z, bc.z, ca.z);
   const vec3 span = abs(vec3(ab.x, bc.x, ca.x)) + abs(vec3(ab.y, bc.y, ca.y)) + error_f;
   bool positive = all(greaterThanEqual(middle + span, vec3(0.0)));
   bool negative = all(lessThanEqual(middle - span, vec3(0.0)));
-  if (one_way) {
+  if (sided) {
     positive = positive && det > 0.0;
     negative = negative && det < 0.0;
   }
@@ -161,7 +161,7 @@ void test_carefully(vec3 a, vec3 e1, vec3 e2, vec2 sizes, uint triangle, bool be
     fourth = orientation * vec3(dot(n, push.u), dot(n, push.v), dot(n, from));
     fourth_error = (64.0 * kRound * (size1(from) + size1(push.u) + size1(push.v)) + 2.0 * push.deviation) * sizes.x * sizes.y + kLeastError;
     // If p is within rounding of the triangle's plane, no result is certain.
-    if (!one_way) {
+    if (!sided) {
       fourth = vec3(0.0);
       fourth_error = 1.0;
     }

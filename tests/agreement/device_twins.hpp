@@ -81,8 +81,8 @@ struct Frame {
 
 /// A triangle from p, the segment to the light's lower left corner as third axis: heights over p, and what decides.
 template <typename T>
-struct AlongWay {
-  AlongWay(const Frame<T>& frame, const FloatCorners& corners) {
+struct AlongSegment {
+  AlongSegment(const Frame<T>& frame, const FloatCorners& corners) {
     for (int i = 0; i < 3; ++i) {
       const auto d = glm::tvec3<T>(corners.at(static_cast<std::size_t>(i))) - frame.p;
       const T w = -glm::dot(frame.axis, d);
@@ -132,8 +132,8 @@ struct CornerProducts {
 inline CornerProducts corner_products(const visibility::DeviceLight& light, const FloatCorners& corners,
                                       const glm::vec3& p) {
   const twins::Frame<float> frame(light, p);
-  const twins::AlongWay<float> seen(frame, corners);
-  const twins::AlongWay<long double> exact({light, p}, corners);
+  const twins::AlongSegment<float> seen(frame, corners);
+  const twins::AlongSegment<long double> exact({light, p}, corners);
   const float per_length = std::max(glm::length(frame.across), glm::length(frame.along)),
               lengths = glm::length(p - light.center) / std::abs(frame.height);
   float far = 0, size = 0;

@@ -57,13 +57,13 @@ struct ExactTriangle {
 };
 
 /// p + t · direction, 0 < t < 1, or without an end where the light is infinitely far away.
-struct ExactWay {
+struct ExactSegment {
   rational::Vector p, direction;
   rational::Vector straight;  ///< before ties were moved aside: a triangle whose plane holds its end is not met
   bool ends = true;
 };
 
-inline bool meets(const ExactWay& from_p, const std::array<glm::vec3, 3>& corners) {
+inline bool meets(const ExactSegment& from_p, const std::array<glm::vec3, 3>& corners) {
   using namespace rational;
   const ExactTriangle triangle(corners);
   const Rational at_p = triangle.height(from_p.p), straight = dot(triangle.normal, from_p.straight);

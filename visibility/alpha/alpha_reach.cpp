@@ -175,9 +175,9 @@ class Directions {
 };
 
 /// A box around all segments from a block of pixels. Culls blocks far from all surfaces that let light through.
-class BlockWays {
+class BlockSegments {
  public:
-  explicit BlockWays(const Light& light) {
+  explicit BlockSegments(const Light& light) {
     if (light.dome) {
       lower_ = glm::vec3(-kEndless);
       upper_ = glm::vec3(kEndless);
@@ -249,7 +249,7 @@ std::vector<std::uint8_t> AlphaReach::reached(const ViewSamples& samples, const 
   const std::uint32_t width = samples.width, height = samples.height;
   std::vector<std::uint8_t> reached(samples.size());
   std::atomic<bool> any = false;
-  const BlockWays to_light(light);
+  const BlockSegments to_light(light);
   tbb::parallel_for(
       tbb::blocked_range2d<std::uint32_t>(0, (height + kBlock - 1) / kBlock, 0, (width + kBlock - 1) / kBlock),
       [&](const auto& blocks) {
@@ -263,7 +263,7 @@ std::vector<std::uint8_t> AlphaReach::reached(const ViewSamples& samples, const 
               }
             }
           };
-          BlockWays all = to_light;
+          BlockSegments all = to_light;
           for_each_pixel([&](std::size_t i) { all.add(samples.p[i]); });
           if (!any_in(tree_, all, [](std::uint32_t) { return true; })) return;
           for_each_pixel([&](std::size_t i) {

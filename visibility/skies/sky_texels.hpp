@@ -100,7 +100,7 @@ class SkyTexels {
   [[nodiscard]] double across_of(std::size_t column, double cosine, double sine) const;
   [[nodiscard]] Place place_of(const SkyArc& arc, const glm::dvec3& direction) const;
   template <typename Visit>
-  void walk_one_way(const SkyArc& arc, Place& at, Place end, const Visit& visit) const;
+  void walk_monotone(const SkyArc& arc, Place& at, Place end, const Visit& visit) const;
 
   static constexpr std::size_t kStep = 4;  // prefix sums are kept at every fourth row, which saves memory
 

@@ -14,7 +14,7 @@ namespace penumbra::visibility {
 /// Walks along an arc whose latitude only rises or only falls. On the circle the slope at an azimuth is −(axis.x cos φ
 /// + axis.y sin φ) / axis.z: comparing slopes shows which border comes first, without computing angles.
 template <typename Visit>
-void SkyTexels::walk_one_way(const SkyArc& arc, Place& at, Place end, const Visit& visit) const {
+void SkyTexels::walk_monotone(const SkyArc& arc, Place& at, Place end, const Visit& visit) const {
   const glm::dvec3& axis = arc.axis;
   const bool east = axis.z > 0, rises = end.slope > at.slope;
   const auto modulo = [&](std::size_t a, std::size_t b) { return (a + columns_ - b) % columns_; };
@@ -71,9 +71,9 @@ void SkyTexels::walk(const SkyArc& arc, const Visit& visit) const {
   if (up_at_a * up_at_b < 0) {  // the highest or lowest direction is between
     const double level = std::hypot(arc.axis.x, arc.axis.y);
     const glm::dvec3 top(-arc.axis.z * arc.axis.x / level, -arc.axis.z * arc.axis.y / level, level);
-    walk_one_way(arc, at, place_of(arc, up_at_a > 0 ? top : -top), visit);
+    walk_monotone(arc, at, place_of(arc, up_at_a > 0 ? top : -top), visit);
   }
-  walk_one_way(arc, at, place_of(arc, arc.b), visit);
+  walk_monotone(arc, at, place_of(arc, arc.b), visit);
 }
 
 }  // namespace penumbra::visibility

@@ -43,13 +43,13 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
 // bound sliver)
 void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;
-  const vec3 way_a = seen_direction(da), way_b = seen_direction(db);
+  const vec3 toward_a = seen_direction(da), toward_b = seen_direction(db);
   const float far_a = length(da), far_b = length(db), far = max(far_a, far_b);
-  const vec2 window = 2.0 * half_cells + 2.0, xa = way_a.xy * at.height + (at.foot - first_cell) * way_a.z,
-             xb = way_b.xy * at.height + (at.foot - first_cell) * way_b.z;
-  const vec2 cut_off_by = vec2(cut_far(at.height - way_a.z), cut_far(at.height - way_b.z));
+  const vec2 window = 2.0 * half_cells + 2.0, xa = toward_a.xy * at.height + (at.foot - first_cell) * toward_a.z,
+             xb = toward_b.xy * at.height + (at.foot - first_cell) * toward_b.z;
+  const vec2 cut_off_by = vec2(cut_far(at.height - toward_a.z), cut_far(at.height - toward_b.z));
   const float lift = lift_per_length * (far + max(cut_off_by.x, cut_off_by.y));
-  const vec2 wide_a = window * (way_a.z + lift), wide_b = window * (way_b.z + lift);
+  const vec2 wide_a = window * (toward_a.z + lift), wide_b = window * (toward_b.z + lift);
   const vec4 inside_a = vec4(wide_a - xa, wide_a + xa), inside_b = vec4(wide_b - xb, wide_b + xb);
   const vec4 t = inside_a / (inside_a - inside_b);
   const vec4 froms = mix(vec4(0.0), mix(t, vec4(2.0), lessThan(inside_b, vec4(0.0))), lessThan(inside_a, vec4(0.0)));
@@ -57,7 +57,7 @@ void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) 
   const float from = settled ? 0.0 : max(max(froms.x, froms.y), max(froms.z, froms.w));
   const float to = settled ? 1.0 : min(min(tos.x, tos.y), min(tos.z, tos.w));
   const bool cut = from > 0.0 || to < 1.0;
-  const vec3 start = from > 0.0 ? mix(way_a, way_b, from) : way_a, end = to < 1.0 ? mix(way_a, way_b, to) : way_b;
+  const vec3 start = from > 0.0 ? mix(toward_a, toward_b, from) : toward_a, end = to < 1.0 ? mix(toward_a, toward_b, to) : toward_b;
   const vec2 seen_a = appears(start), seen_b = appears(end);
   const float foot_a = length(seen_a - at.foot), foot_b = length(seen_b - at.foot), off = open ? sliver : 0.0;
   const float far_start = (cut ? far : far_a) + (from > 0.0 ? mix(cut_off_by.x, cut_off_by.y, from) : cut_off_by.x);

@@ -22,12 +22,12 @@ def measure_layers(runner):
     data = {}
     for body, make in BODIES.items():
         fills = ["backproject:size=64:fill=none", "backproject:size=64"]
-        entries = [f"{way}:layers={k}" for way in ("backproject-peel:size=64:samples=0", "backproject-peel:size=64:samples=0:select=deepest",
+        entries = [f"{variant}:layers={k}" for variant in ("backproject-peel:size=64:samples=0", "backproject-peel:size=64:samples=0:select=deepest",
                                                    "bitmask:size=64") for k in (1, 2, 3, 4)]
         found = runner.compare(make(), fills + entries, samples=256, size=40)
         keep = ("rmse", "bias", "leak")
         data[body] = {"fill": [measures(found, entry, keep) for entry in fills],
-                      "layers": [[measures(found, entry, keep) for entry in entries[4 * way:4 * way + 4]] for way in range(3)]}
+                      "layers": [[measures(found, entry, keep) for entry in entries[4 * variant:4 * variant + 4]] for variant in range(3)]}
     return data
 
 
@@ -52,12 +52,12 @@ def draw_layers(data):
 
 
 def measure_gaps(runner):
-    ways = [("no filling", "backproject:size=128:fill=none"), ("gaps filled", "backproject:size=128"),
+    variants = [("no filling", "backproject:size=128:fill=none"), ("gaps filled", "backproject:size=128"),
             ("3 layers", "backproject-peel:size=128:samples=0")]
     data = {}
     for body in ("plates", "hair"):
-        found = runner.compare(BODIES[body](), [entry for _, entry in ways], size=64)
-        data[body] = [[name, picture(found, entry, 64), measures(found, entry, ("rmse", "bias"))] for name, entry in ways]
+        found = runner.compare(BODIES[body](), [entry for _, entry in variants], size=64)
+        data[body] = [[name, picture(found, entry, 64), measures(found, entry, ("rmse", "bias"))] for name, entry in variants]
         data[body].append(["exact", picture(found, "truth", 64), None])
     return data
 
@@ -81,8 +81,8 @@ def measure_bias(runner):
     """A ball and a box that stand on a floor that casts, too; seen with their own shaded sides."""
     world = scene([ball(y=0.8, x=-0.9, radius=0.8, segments=32), box([1.0, 0.5, 0], [0.5, 0.5, 0.5])], half=0.5, floor_casts=True)
     world["camera"] = {"eye": [1.5, 4.2, 4.6], "target": [0, 0.4, 0], "verticalFov": 42}
-    ways = ["backproject:size=128:fill=none:depth={}:bias={}", "bitmask:size=128:depth={}:bias={}"]
-    entries = [way.format("first", bias) for way in ways for bias in BIASES]
+    variants = ["backproject:size=128:fill=none:depth={}:bias={}", "bitmask:size=128:depth={}:bias={}"]
+    entries = [variant.format("first", bias) for variant in variants for bias in BIASES]
     others = ["backproject:size=128:fill=none:depth=midpoint:bias=0", "backproject:size=128:fill=none:depth=dual:bias=0.5"]
     found = runner.compare(world, entries + others, size=40)
     keep = ("dark", "leak", "rmse")
@@ -97,7 +97,7 @@ def draw_bias(data):
     xs = [1 / 32] + BIASES[1:]
     names = ["0"] + [f"{bias:g}" if bias >= 0.5 else f"1/{round(1 / bias)}" for bias in BIASES[1:]]
     for i, (field, title) in enumerate((("dark", "(a) lit pixels with V < 0.95"), ("leak", "(b) umbra with V > 0.05"), ("rmse", "(c) RMSE of V"))):
-        top = 1.25 * max(row[field] for way in ("patch", "quad") for row in data[way])
+        top = 1.25 * max(row[field] for variant in ("patch", "quad") for row in data[variant])
         chart = Chart(d, (60 + 285 * i, 50, 230, 220), (0.025, 170), (0, top), title, "bias, texels", "", log_x=True, x_ticks=xs, x_names=names)
         for k in range(1, 5):
             value = top * k / 5

@@ -24,9 +24,9 @@ def profile(found, entry):
     return [rounded(v) for v in found[entry]["V"][4 * WIDTH:5 * WIDTH]]
 
 
-def rows_of(runner, world, ways, **more):
-    found = runner.compare(world, [entry for _, entry in ways], size=(WIDTH, 8), **more)
-    return [["exact", profile(found, "truth")]] + [[name, profile(found, entry)] for name, entry in ways]
+def rows_of(runner, world, variants, **more):
+    found = runner.compare(world, [entry for _, entry in variants], size=(WIDTH, 8), **more)
+    return [["exact", profile(found, "truth")]] + [[name, profile(found, entry)] for name, entry in variants]
 
 
 def draw_rows(d, box, rows, title, floor, colours=(None, 1, 0, 2), label="x on the floor"):
@@ -43,14 +43,14 @@ def draw_rows(d, box, rows, title, floor, colours=(None, 1, 0, 2), label="x on t
 
 
 PCSS = "pcss:size=256:blockerSamples=256:filterSamples=256"
-PCSS_WAYS = [("pcss", PCSS), ("backproject", "backproject:size=256"), ("contour", "contour:size=256:traversal=hierarchy")]
+PCSS_VARIANTS = [("pcss", PCSS), ("backproject", "backproject:size=256"), ("contour", "contour:size=256:traversal=hierarchy")]
 
 
 def measure_pcss(runner):
     wall = [box([-1.6, 2.05, 0], [0.05, 2, 2.4])]
     heights = [square("high", [-0.55, 3.8, 0], 0.5, 2.0), square("low", [0.75, 0.6, 0], 0.75, 2.0)]
-    return {"wall": rows_of(runner, row_scene(wall, half=0.7), PCSS_WAYS),
-            "heights": rows_of(runner, row_scene(heights, half=0.9), PCSS_WAYS)}
+    return {"wall": rows_of(runner, row_scene(wall, half=0.7), PCSS_VARIANTS),
+            "heights": rows_of(runner, row_scene(heights, half=0.9), PCSS_VARIANTS)}
 
 
 def draw_pcss(data):
@@ -74,9 +74,9 @@ def measure_pcf(runner):
     tilted = scene([], half=0.2, floor_casts=True)
     tilted["meshes"][0]["quad"]["halfU"] = [2.5 * 0.866, 1.25, 0]
     tilted["camera"] = {"eye": [0, 4, 4], "target": [0, 0, 0], "verticalFov": 30}
-    ways = [("own depth", "pcf:size=128:window=7:bias=0:receiverPlane=off"), ("plane", "pcf:size=128:window=7")]
-    found = runner.compare(tilted, [entry for _, entry in ways])
-    for name, entry in ways:
+    variants = [("own depth", "pcf:size=128:window=7:bias=0:receiverPlane=off"), ("plane", "pcf:size=128:window=7")]
+    found = runner.compare(tilted, [entry for _, entry in variants])
+    for name, entry in variants:
         values = [round(49 * v) for v, r, a in zip(found[entry]["V"], found["truth"]["V"], found["truth"]["A"]) if a > 0 and r == 1]
         data[name] = [rounded(sum(v == k for v in values) / len(values)) for k in range(50)]
     return data
@@ -182,8 +182,8 @@ def measure_fusion(runner):
     for name, (first, last) in LAYOUTS.items():
         a, b = (-0.8 * 3 / 5, 0.0), (first * 2 / 5, last * 2 / 5)
         casters = [square("upper", [(a[0] + a[1]) / 2, 3, 0], (a[1] - a[0]) / 2, 1.5), square("lower", [(b[0] + b[1]) / 2, 2, 0], (b[1] - b[0]) / 2, 1.5)]
-        ways = [entry for _, entry in FUSION if entry]
-        found = runner.compare(scene(casters, half=1.0, floor=0.05, eye=0.01), ways, size=(3, 3), samples=1024)
+        variants = [entry for _, entry in FUSION if entry]
+        found = runner.compare(scene(casters, half=1.0, floor=0.05, eye=0.01), variants, size=(3, 3), samples=1024)
         data[name] = [rounded(found[entry or "truth"]["V"][4]) for _, entry in FUSION]
     return data
 
@@ -214,9 +214,9 @@ SLICES = [1, 2, 4, 8, 16, 32]
 def measure_slices(runner):
     data = {}
     for name, casters in (("ball", [ball()]), ("box", [box([0, 1.5, 0], [0.4, 1, 0.4])]), ("bars", bars())):
-        ways = [f"occlusion-textures:size=256:slices={k}" for k in SLICES] + ["convolution:size=256"]
-        found = runner.compare(scene(casters, half=0.6), ways)
-        data[name] = [measures(found, way, ("rmse", "bias")) for way in ways]
+        variants = [f"occlusion-textures:size=256:slices={k}" for k in SLICES] + ["convolution:size=256"]
+        found = runner.compare(scene(casters, half=0.6), variants)
+        data[name] = [measures(found, variant, ("rmse", "bias")) for variant in variants]
     return data
 
 
@@ -268,9 +268,9 @@ def draw_variance(data):
 def measure_levels(runner):
     data = {}
     for name, make in (("ball", lambda: scene([ball()], half=0.5)), ("bars", lambda: scene([square(f"bar{i}", [(i - 2) * 0.5, 2.5, 0], 0.06, 1.2) for i in range(5)], half=0.4))):
-        ways = [f"bitmask:size=128:occluder={kind}:level={level}" for kind in ("patch", "quad", "rect") for level in range(5)]
-        found = runner.compare(make(), ways, samples=1024)
-        data[name] = [[measures(found, way, ("rmse", "bias")) for way in ways[5 * k:5 * k + 5]] for k in range(3)]
+        variants = [f"bitmask:size=128:occluder={kind}:level={level}" for kind in ("patch", "quad", "rect") for level in range(5)]
+        found = runner.compare(make(), variants, samples=1024)
+        data[name] = [[measures(found, variant, ("rmse", "bias")) for variant in variants[5 * k:5 * k + 5]] for k in range(3)]
     return data
 
 
@@ -296,10 +296,10 @@ def draw_levels(data):
 def measure_layers(runner):
     """A ball, and below it a plate that the light's centre does not see."""
     casters = [ball(y=3.0, radius=0.8), square("hidden", [0, 1.2, 0], 0.8)]
-    ways = [f"bitmask:size=64:layers={k}" for k in (1, 2, 3, 4)]
-    found = runner.compare(scene(casters, half=0.8), ways, samples=256)
-    return {"rows": [measures(found, way, ("rmse", "bias")) for way in ways],
-            "tiles": [picture(found, ways[0], 48), picture(found, ways[3], 48), picture(found, "truth", 48)]}
+    variants = [f"bitmask:size=64:layers={k}" for k in (1, 2, 3, 4)]
+    found = runner.compare(scene(casters, half=0.8), variants, samples=256)
+    return {"rows": [measures(found, variant, ("rmse", "bias")) for variant in variants],
+            "tiles": [picture(found, variants[0], 48), picture(found, variants[3], 48), picture(found, "truth", 48)]}
 
 
 def draw_layers(data):

@@ -66,9 +66,9 @@ def measure_pictures(runner):
     row = [0.005 * 1.35 ** i for i in range(12)]
     found = runner.compare(world, [entry(epsilon) for epsilon in row], size=48)
     fit = max((epsilon for epsilon in row if found[entry(epsilon)]["counters"]["maps"] >= 14), default=row[0])
-    ways = [("all corners", entry(0)), ("adaptive", entry(fit)), ("4 corners", entry(1)), ("adaptive, weights=area", entry(fit, ":weights=area"))]
-    found = runner.compare(world, [e for _, e in ways], size=64)
-    tiles = [[name, picture(found, e, 64), found[e]["counters"]["maps"], measures(found, e)["rmse"]] for name, e in ways]
+    variants = [("all corners", entry(0)), ("adaptive", entry(fit)), ("4 corners", entry(1)), ("adaptive, weights=area", entry(fit, ":weights=area"))]
+    found = runner.compare(world, [e for _, e in variants], size=64)
+    tiles = [[name, picture(found, e, 64), found[e]["counters"]["maps"], measures(found, e)["rmse"]] for name, e in variants]
     lines = []
     for y, half in ((0.8, 0.2), (2.2, 1.0)):
         world = scene([turned_plate(y)], half=half, half_z=0.002)

@@ -7,7 +7,7 @@ from drawing import DARK, INK, Drawing
 from experiment import ball, bunny, measures, picture, rounded, scene, square
 
 FLAT, MINMAX, HIERARCHY, PACKET = 0, 1, 2, 3
-WAYS = [("every cell", "contour:size={}:search=mssm:traversal=flat"), ("min-max quadtree (Dmitriev and Uralsky)", "contour:size={}:search=mssm:traversal=minmax"),
+VARIANTS = [("every cell", "contour:size={}:search=mssm:traversal=flat"), ("min-max quadtree (Dmitriev and Uralsky)", "contour:size={}:search=mssm:traversal=minmax"),
         ("hierarchy of contours", "contour:size={}:search=mssm:traversal=hierarchy"), ("hierarchy and packets of 3 × 3", "packet:size={}")]
 
 
@@ -19,7 +19,7 @@ def measure_samples(runner):
     rows = {"ball": [], "bunny": []}
     for body, make in (("ball", ball), ("bunny", bunny)):
         for half in (0.25, 0.5, 1.0, 2.0):
-            entries = [text.format(96) for _, text in WAYS]
+            entries = [text.format(96) for _, text in VARIANTS]
             found = runner.compare(scene([make()], half=half), entries)
             rows[body].append([half] + [rounded(visited(found[entry]["counters"]) / 48 ** 2) for entry in entries])
     return rows
@@ -36,8 +36,8 @@ def draw_samples(data):
             chart.curve([(row[0], row[1 + style]) for row in data[body]], style)
         last = data[body][-1]
         chart.note(last[0], last[1], f"{last[1] / last[4]:.0f} × fewer", anchor="end", offset=(-8, -10))
-    key(d, (70, 340), [(FLAT, WAYS[0][0]), (MINMAX, WAYS[1][0])], 115)
-    key(d, (465, 340), [(HIERARCHY, WAYS[2][0]), (PACKET, WAYS[3][0])], 180)
+    key(d, (70, 340), [(FLAT, VARIANTS[0][0]), (MINMAX, VARIANTS[1][0])], 115)
+    key(d, (465, 340), [(HIERARCHY, VARIANTS[2][0]), (PACKET, VARIANTS[3][0])], 180)
     d.text((70, 366), "Map of 96 × 96, picture of 48 × 48 pixels of the floor; the outlines found are the same, to the bit.", 11.5)
     return d.finish()
 
@@ -126,11 +126,11 @@ def draw_views(data):
 
 def measure_speed(runner):
     rows = []
-    ways = ["contour:size=192:search=mssm:traversal=flat", "packet:size=192:hierarchy=off", "packet:size=192"]
+    variants = ["contour:size=192:search=mssm:traversal=flat", "packet:size=192:hierarchy=off", "packet:size=192"]
     for half in (0.25, 0.5, 1.0, 2.0):
-        found = runner.compare(scene([bunny()], half=half), ways, size=48, runs=1)
-        rows.append([half] + [rounded(found[ways[0]]["evaluate"] / found[way]["evaluate"]) for way in ways[1:]] +
-                    [rounded(visited(found[ways[0]]["counters"]) / visited(found[way]["counters"])) for way in ways[1:]])
+        found = runner.compare(scene([bunny()], half=half), variants, size=48, runs=1)
+        rows.append([half] + [rounded(found[variants[0]]["evaluate"] / found[variant]["evaluate"]) for variant in variants[1:]] +
+                    [rounded(visited(found[variants[0]]["counters"]) / visited(found[variant]["counters"])) for variant in variants[1:]])
     return {"rows": rows}
 
 

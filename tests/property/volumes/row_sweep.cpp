@@ -58,7 +58,7 @@ std::vector<Triangle> quarter_turned(std::vector<Triangle> triangles) {
 
 /// Nearly everything coincides with something on a lattice: corners with edges, edges with edges, three lines in one
 /// point. Off the lattice, needles have every width.
-TEST(RowSweep, TheWayThatRowsRunDoesNotMatter) {
+TEST(RowSweep, TheDirectionOfRowsDoesNotMatter) {
   std::mt19937 random(1);
   double least = 1, most = 0;
   for (int round = 0; round < 4000; ++round) {

@@ -142,8 +142,8 @@ class SampleCount {
         // One decision for all edges that meet in an end.
         const TileM a_left = hn::Gt(hn::Mul(x, ay), hn::Mul(y, ax)), b_left = hn::Gt(hn::Mul(x, by), hn::Mul(y, bx));
         const TileM between = hn::Xor(a_left, b_left);
-        const TileV way_x = hn::Sub(bx, ax), way_y = hn::Sub(by, ay);
-        const TileV side = hn::MulSub(hn::Sub(x, ax), way_y, hn::Mul(hn::Sub(y, ay), way_x));
+        const TileV delta_x = hn::Sub(bx, ax), delta_y = hn::Sub(by, ay);
+        const TileV side = hn::MulSub(hn::Sub(x, ax), delta_y, hn::Mul(hn::Sub(y, ay), delta_x));
         if (!hn::AllFalse(d, between)) {
           const TileV along_a = hn::MulAdd(x, ax, hn::Mul(y, ay)), along_b = hn::MulAdd(x, bx, hn::Mul(y, by));
           const TileV round = hn::Mul(hn::Set(d, 16 * kRound), squared), off_a = hn::Mul(constant(kOffA), length),

@@ -147,14 +147,15 @@ class PointScatter {
   HWY_INLINE void test(const Passed& passed, std::size_t edge) {
     const Tile d;
     const auto constant = [&](UpwardField field) { return hn::Set(d, edges_.fields[field][edge]); };
-    const auto low_x = constant(kLowX), low_y = constant(kLowY), way_x = constant(kWayX), way_y = constant(kWayY);
+    const auto low_x = constant(kLowX), low_y = constant(kLowY), delta_x = constant(kDeltaX),
+               delta_y = constant(kDeltaY);
     const auto jump = hn::IfThenElse(passed.low_left, hn::Neg(constant(kJump)), constant(kJump));
     const TileM one_left = hn::Xor(passed.low_left, passed.high_left);
     touch(passed.tile);
     for (std::size_t lane = 0; lane < LightTiles::kWide; lane += hn::Lanes(d)) {
       const std::size_t slot = std::size_t{passed.tile} * LightTiles::kWide + lane;
       const auto x = hn::Load(d, &tiles_.x[slot]), y = hn::Load(d, &tiles_.y[slot]);
-      const auto side = hn::MulSub(hn::Sub(x, low_x), way_y, hn::Mul(hn::Sub(y, low_y), way_x));
+      const auto side = hn::MulSub(hn::Sub(x, low_x), delta_y, hn::Mul(hn::Sub(y, low_y), delta_x));
       const TileM over_low = hn::Ge(y, low_y), over_high = hn::Ge(y, constant(kHighY)),
                   right = hn::Gt(side, hn::Zero(d)), between = hn::AndNot(over_high, over_low);
       const TileM changes = hn::Or(hn::And(between, hn::Xor(right, passed.low_left)), hn::And(over_high, one_left));
@@ -183,12 +184,12 @@ class PointScatter {
     const std::size_t i = e.crossing();
     PreciseInput precise = precise_of(e);
     precise.projected = {glm::vec2(table[kX0][i], table[kY0][i]), glm::vec2(table[kX1][i], table[kY1][i])};
-    const float error = table[kError][i], wide = std::abs(e[kWayX]);
+    const float error = table[kError][i], wide = std::abs(e[kDeltaX]);
     const ProjectedEdge placed =
         place_edge(precise, s_.open).value_or(ProjectedEdge{.error_near = error, .error_far = error});
     return own_.emplace(
         OwnEdge{e.crossing(), placed,
-                1.2F * (placed.error_near + placed.error_far) * (wide + e[kWayY]) + 16 * kRound * wide * e[kWayY]});
+                1.2F * (placed.error_near + placed.error_far) * (wide + e[kDeltaY]) + 16 * kRound * wide * e[kDeltaY]});
   }
   [[nodiscard]] PreciseInput precise_of(const UpwardEdge& e) const {
     const auto number = std::bit_cast<std::uint32_t>(s_.crossing[kEdge][e.crossing()]);

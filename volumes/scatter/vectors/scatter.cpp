@@ -86,9 +86,9 @@ class SampleScatter {
     const V near_x = hn::IfThenElse(turn, x1, x0), near_y = hn::IfThenElse(turn, y1, y0);
     const V far_x = hn::IfThenElse(turn, x0, x1), far_y = hn::IfThenElse(turn, y0, y1);
     const V low_x = hn::Min(x0, x1), high_x = hn::Max(x0, x1), low_y = hn::Min(y0, y1), high_y = hn::Max(y0, y1);
-    const V way_x = hn::Sub(far_x, near_x), way_y = hn::Sub(far_y, near_y);
-    const M flat = hn::Eq(way_y, set(0));
-    const V slope = hn::Div(way_x, way_y), steep = hn::IfThenElse(flat, set(1e30F), hn::Abs(slope));
+    const V delta_x = hn::Sub(far_x, near_x), delta_y = hn::Sub(far_y, near_y);
+    const M flat = hn::Eq(delta_y, set(0));
+    const V slope = hn::Div(delta_x, delta_y), steep = hn::IfThenElse(flat, set(1e30F), hn::Abs(slope));
     const V jump = hn::IfThenElse(hn::Xor(hn::Lt(near_y, far_y), turn), hn::Neg(k), k);
     const V rows = set(static_cast<float>(grid.rows)), columns = set(static_cast<float>(grid.columns));
 
@@ -132,7 +132,7 @@ class SampleScatter {
 
     const bool any_left = !hn::AllFalse(d, left);
     if (any_left) {
-      const V inverse = hn::Div(way_y, way_x);
+      const V inverse = hn::Div(delta_y, delta_x);
       const V y = hn::Min(hn::Max(hn::Add(near_y, hn::Mul(hn::Sub(set(-0.5F), near_x), inverse)), low_y), high_y);
       const V error_y = hn::MulAdd(hn::Mul(set(2.41F), error), hn::Add(set(1), hn::Abs(inverse)),
                                    hn::Mul(set(8.1F * kRound), hn::Add(set(grid.half_cells.y), hn::Abs(near_y))));

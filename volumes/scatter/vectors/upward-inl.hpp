@@ -30,8 +30,8 @@ enum UpwardField : std::size_t {
   kLowY,
   kHighX,
   kHighY,
-  kWayX,
-  kWayY,
+  kDeltaX,
+  kDeltaY,
   kJump,       // change of the depth to the right of the edge
   kNear,       // a light sample whose |side_of| is at most this may be on the other side of the edge
   kLeftmost,   // no such light sample is left of this,
@@ -62,7 +62,7 @@ struct UpwardEdge {
   [[nodiscard]] std::size_t crossing() const { return edges.first + lane; }
   /// Returns twice the area between the three points: > 0 if (x, y) is right of the line through the edge.
   [[nodiscard]] float side_of(float x, float y) const {
-    return (x - (*this)[kLowX]) * (*this)[kWayY] - (y - (*this)[kLowY]) * (*this)[kWayX];
+    return (x - (*this)[kLowX]) * (*this)[kDeltaY] - (y - (*this)[kLowY]) * (*this)[kDeltaX];
   }
 };
 
@@ -80,7 +80,7 @@ struct UpwardEdge {
   e.low_x = hn::IfThenElse(up, x0, x1), e.low_y = hn::IfThenElse(up, y0, y1);
   e.high_x = hn::IfThenElse(up, x1, x0), e.high_y = hn::IfThenElse(up, y1, y0);
   e.jump = hn::IfThenElse(up, hn::Neg(k), k);
-  const V way_x = hn::Sub(e.high_x, e.low_x), way_y = hn::Sub(e.high_y, e.low_y), wide = hn::Abs(way_x);
+  const V delta_x = hn::Sub(e.high_x, e.low_x), delta_y = hn::Sub(e.high_y, e.low_y), wide = hn::Abs(delta_x);
   const V around = hn::Mul(set(2.41F), column(kError)), rounding = set(16 * kRound);
   e.leftmost = hn::Sub(hn::Min(e.low_x, e.high_x), around);
   e.rightmost = hn::Add(hn::Max(e.low_x, e.high_x), around);
@@ -91,17 +91,17 @@ struct UpwardEdge {
   store(kLowY, e.low_y);
   store(kHighX, e.high_x);
   store(kHighY, e.high_y);
-  store(kWayX, way_x);
-  store(kWayY, way_y);
+  store(kDeltaX, delta_x);
+  store(kDeltaY, delta_y);
   store(kJump, e.jump);
-  store(kNear, hn::MulAdd(around, hn::Add(wide, way_y), hn::Mul(rounding, hn::Mul(wide, way_y))));
+  store(kNear, hn::MulAdd(around, hn::Add(wide, delta_y), hn::Mul(rounding, hn::Mul(wide, delta_y))));
   store(kLeftmost, e.leftmost);
   store(kRightmost, e.rightmost);
   store(kBottom, e.bottom);
   store(kTop, e.top);
   // A flatter edge may be next to any light sample of a row. Any threshold is correct: it only keeps slopes finite.
-  const M leans = hn::Gt(way_y, hn::Mul(set(1e-6F), wide));
-  e.slope = hn::IfThenElseZero(leans, hn::Div(way_x, way_y));
+  const M leans = hn::Gt(delta_y, hn::Mul(set(1e-6F), wide));
+  e.slope = hn::IfThenElseZero(leans, hn::Div(delta_x, delta_y));
   const V beside =
       hn::MulAdd(around, hn::Add(set(1), hn::Abs(e.slope)), hn::Mul(rounding, hn::Add(hn::Abs(e.low_x), wide)));
   e.beside = hn::IfThenElse(leans, beside, set(3e38F));

@@ -16,7 +16,7 @@ namespace {
 using visibility::MethodOptions;
 
 /// All search variants, which must find the same contours.
-std::vector<std::pair<Factory, MethodOptions>> all_ways() {
+std::vector<std::pair<Factory, MethodOptions>> all_variants() {
   std::vector<std::pair<Factory, MethodOptions>> variants;
   for (const char* search : {"none", "hsm", "mssm", "ysm"}) {
     variants.push_back({maps::make_contour, {{"search", search}, {"traversal", "flat"}}});
@@ -42,7 +42,7 @@ class MapsContourVariants : public ContourTest {
     const Masks first = run(maps::make_contour, stage, {{"size", size}, {"search", "none"}, {"traversal", "flat"}});
     std::set<float> values(first.visibility.begin(), first.visibility.end());
     for (const float v : values) EXPECT_TRUE(v >= 0 && v <= 1) << what << ": " << v;
-    for (auto [factory, options] : all_ways()) {
+    for (auto [factory, options] : all_variants()) {
       options["size"] = size;
       const std::vector<float> found = run(factory, stage, options).visibility;
       std::string variant;
