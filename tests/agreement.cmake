@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Methods of several rooms, one against the other and all against the exact decision.
+# Tests that compare methods of several rooms with one another, and all of them with the exact decision.
 set(soup_sources ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_case.cpp ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_judge.cpp
                  ${CMAKE_CURRENT_SOURCE_DIR}/fuzz/soup_methods.cpp)
 penumbra_test(agreement FULL CorpusSweep.*

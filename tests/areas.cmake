@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-# Areas of unions on the light, and `exact`, which gives them. No device.
+# Tests of the areas of unions on the light, and of the method `exact`, which computes them. No device.
 penumbra_test(areas
   SOURCES analytic/exact_area_closed_forms.cpp property/exact_area_soups.cpp unit/exact_method.cpp
   LIBRARIES penumbra_reference)
 if(PENUMBRA_WITH_CGAL_GPL)
-  # CGAL's Boolean set operations (GPL) judge the union: another library, another way, in a test alone.
+  # CGAL's Boolean set operations (GPL) check the union: an independent library and algorithm, used in this test alone.
   find_package(CGAL REQUIRED)
   target_sources(areas_test PRIVATE agreement/exact_area_booleans.cpp)
   set_source_files_properties(agreement/exact_area_booleans.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# EXR, PNG and JPEG, files that appear whole or not at all, names that are nearly right, and sorting on all cores.
+# Tests of base: EXR, PNG and JPEG, files that appear whole or not at all, suggestions for misspelt names, and sorting
+# on all cores.
 find_package(JPEG REQUIRED)
 find_package(OpenEXR REQUIRED)
 find_package(TBB REQUIRED)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# penumbra-bench as its user meets it: lines that parse, names that stay. No times.
+# Tests penumbra-bench from outside: its lines parse and its names stay the same. Times are not tested.
 if(NOT PENUMBRA_BENCH)
   return()
 endif()

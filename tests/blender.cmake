@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The Blender add-on: without Blender (quick), and beside Cycles in Blender (full). numpy is Debian's, hence its Python.
+# Tests of the Blender add-on: without Blender (quick), and in Blender, compared with Cycles (full). They need Debian's
+# Python, because numpy is Debian's package.
 find_program(PENUMBRA_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH REQUIRED)
 set(addon ${PROJECT_BINARY_DIR}/penumbra-blender.zip)
 add_test(NAME blender.addon

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The report as people meet it: headless Chromium, driven by Python's standard library through the browser's own pipe.
+# Tests the report's page in headless Chromium, driven by Python's standard library through the browser's own pipe.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME browser.report
          COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/browser/report_page.py $<TARGET_FILE:penumbra>

@@ -10,7 +10,7 @@
 
 namespace penumbra::tests {
 
-/// argv or envp: pointers into strings that outlive it.
+/// Returns pointers to the strings, for use as argv or envp; the strings must outlive them.
 inline std::vector<char*> pointers(std::vector<std::string>& strings) {
   std::vector<char*> result;
   for (std::string& string : strings) result.push_back(string.data());

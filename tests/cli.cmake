@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The program as a user meets it: exit codes, messages, files.
+# Tests the program as a user meets it: exit codes, messages, files.
 penumbra_test(cli FULL *EveryTriple* SHARDS Part/RenderTogether=2 Part/CompareTogether=2
   SOURCES
   cli/alpha.cpp

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Error metrics, pictures and reports; form factors, and the beauty that is made of them. No device.
+# Tests of error metrics, pictures and reports, of form factors, and of the beauty that is computed from them. No
+# device.
 find_package(hwy REQUIRED)
 penumbra_test(compare
   SOURCES

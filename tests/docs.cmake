@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# The figures of docs/ are what their script draws; each picture and link of a page leads somewhere; the commands of the README, of the
-# tutorials and of docs/scenes.md print what the pages say; options.md is what the program says; tables of timings, and the README's
-# figures beside Cycles, are what bench/results/ holds, and every method has its rows in them and in the ranking; the chart of a benchmark
-# has its marks where its lines say; the example in the help of each command runs.
+# Tests that docs/ agrees with the program and the data: figures are what their script draws; each picture and link of a
+# page leads somewhere; the commands of the README, the tutorials and docs/scenes.md print what the pages say;
+# options.md is the program's own help; tables of timings, and the README's figures next to those of Cycles, are what
+# bench/results/ holds; every method has its rows in these tables and in the ranking; the marks in a benchmark's chart
+# are where its data say; the example in the help of each command runs.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 add_test(NAME docs.figures COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/figures/make.py --check)
 add_test(NAME docs.options COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/docs/option_tables.py --program $<TARGET_FILE:penumbra> --check)

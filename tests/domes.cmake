@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Domes: every method that does them against closed forms, against one another and against the exact decision; and as a user
-# meets them. No device.
+# Tests of domes: every method that supports them, compared with closed forms, with the other methods and with the exact
+# decision; and the program from outside. No device.
 penumbra_test(domes
   SOURCES
   agreement/domes.cpp

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The program where the system says no: limits, streams, disks, kills. The long searches are those called Long….
+# Tests of the program when the system refuses something: limits, streams, disks, kills. Names of long searches begin
+# with Long.
 penumbra_test(faults FULL *Long*
   SOURCES
   faults/child.cpp

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Fuzz targets. Every build replays the corpus (label quick). The preset `fuzz` links the same code with libFuzzer, and
-# its tests (label full) look for ten minutes each; elsewhere tests of that name configure and build that preset first.
+# its tests (label full) search for ten minutes each; in other builds the tests of these names configure and build that
+# preset first.
 set(PENUMBRA_FUZZ_SECONDS 600 CACHE STRING "How long each fuzz target runs")
 add_custom_target(penumbra_fuzz)
 

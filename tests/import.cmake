@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Tests of the child process: polygons of any shape, glTF, and files that are opened once.
+# Tests of the import in a child process: polygons of any shape, glTF, and files that are opened only once.
 penumbra_test(import FULL ImportCorpus.*
   SOURCES
   agreement/mesh/import_corpus.cpp

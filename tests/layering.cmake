@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DROOT=… -P layering.cmake: fails on an include that runs against the arrows of ARCHITECTURE.md, on a quoted
-# include that does not start at the root, and on a library that leaves the room it is kept in.
+# include that does not start at the root, and on a library that is included outside the room it is kept in.
 # cmake -DSELF_TEST=folder -P layering.cmake: plants one violation of each kind and expects to catch it.
 cmake_minimum_required(VERSION 3.25)
 
-# Rooms that each room may include beside itself. A room is a folder; one named with a slash is a room inside another,
-# and a folder that is not named here belongs to the room around it. Families (volumes/…, vsm, maps) never include one
-# another.
+# The rooms that each room may include, apart from itself. A room is a folder; one named with a slash is a room inside
+# another, and a folder that is not named here belongs to the room around it. Families (volumes/…, vsm, maps) never
+# include one another.
 set(may_base)
 set(may_network base)
 set(may_mesh base)
@@ -40,7 +40,7 @@ set(may_volumes/edges/vectors volumes/edges engines/vectors ${all_visibility} sc
 set(signed_edges volumes/edges/device volumes/edges/vectors volumes/edges)
 set(may_volumes/raster volumes/edges/device volumes/edges volumes/wedges render ${all_visibility} scenes mesh base)
 set(may_volumes/soft engines/pairs volumes/raster volumes/edges volumes/wedges render ${all_visibility} scenes mesh base)
-# Two methods of signed edges, which do not know each other: what both use is in volumes/edges.
+# Two methods of signed edges, which do not include each other: their common code is in volumes/edges.
 set(may_volumes/scatter areas ${signed_edges} engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
 set(may_volumes/counters ${signed_edges} volumes/raster volumes/wedges engines engines/device engines/vectors render ${all_visibility} scenes mesh base)
 set(may_volumes volumes/scatter volumes/counters volumes/soft engines render ${all_visibility} scenes mesh base)
@@ -93,8 +93,8 @@ set(rooms base network mesh mesh/diagnosis mesh/shapes repair scenes scenes/form
 set(may_tests import ${rooms})
 list(APPEND rooms tests)
 
-# Rooms that may see a library's headers, with the rooms inside them; everywhere else only plain structs cross. No .hpp
-# may, except those that say "Internal to this room" or "Inside <room>/ only".
+# Rooms that may include a library's headers, as may the rooms inside them; all other rooms exchange only plain structs
+# with them. No .hpp may include these headers, except those that say "Internal to this room" or "Inside <room>/ only".
 set(kept_vulkan render)
 set(kept_spirv_cross render)
 set(kept_EGL render/opengl)
@@ -117,7 +117,7 @@ set(kept_gmpxx volumes areas)
 set(kept_hwy visibility/lights visibility/seen visibility/tree engines/vectors engines/pairs volumes/edges volumes/scatter volumes/counters vsm tests)
 set(libraries vulkan spirv_cross EGL GL CGAL OpenMesh embree3 assimp pugixml minizip tiny_gltf valijson OpenEXR libdeflate png jpeglib CLI boost gmpxx hwy)
 
-# room_of(folder result): the innermost room that the folder is, or lies in; empty if none.
+# room_of(folder result): sets result to the innermost room that is the folder or contains it; to nothing if none does.
 function(room_of folder result)
   while(folder AND NOT folder IN_LIST rooms)
     cmake_path(GET folder PARENT_PATH folder)
@@ -125,7 +125,7 @@ function(room_of folder result)
   set(${result} "${folder}" PARENT_SCOPE)
 endfunction()
 
-# keeps(library room result): may the room see its headers?
+# keeps(library room result): sets result to whether the room may include the library's headers.
 function(keeps library room result)
   set(${result} FALSE PARENT_SCOPE)
   while(room)
@@ -136,7 +136,7 @@ function(keeps library room result)
   endwhile()
 endfunction()
 
-# check(root result): a list of complaints, one a wrong include.
+# check(root result): sets result to a list of complaints, one for each wrong include.
 function(check root result)
   set(complaints)
   set(folders ${rooms})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The library as a program uses it that only knows its headers, and the Python module.
+# Tests of the library, used as a program would that knows only its headers, and of the Python module.
 penumbra_test(library
   SOURCES library/ends.cpp library/instances.cpp library/own_method.cpp library/renderer.cpp cli/program.cpp
   LIBRARIES penumbra::penumbra penumbra_base nlohmann_json::nlohmann_json)
@@ -14,7 +14,7 @@ foreach(test module page)
                                        ${PROJECT_SOURCE_DIR})
   set_tests_properties(python.${test} PROPERTIES LABELS quick ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python;MPLBACKEND=Agg")
 endforeach()
-# Map methods against twins in numpy, written from their papers.
+# Compares map methods with twins: independent versions in numpy, written from the methods' papers.
 foreach(twin backprojection filtered_fits filtering fits hard layers rays samples screen sun_fits warps)
   add_test(NAME twins.${twin} COMMAND ${Python_EXECUTABLE} ${CMAKE_CURRENT_SOURCE_DIR}/twins/${twin}.py)
   set_tests_properties(twins.${twin} PROPERTIES LABELS full ENVIRONMENT "PYTHONPATH=${PROJECT_BINARY_DIR}/python")

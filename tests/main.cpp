@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// main of the test executables: GoogleTest's, with the program's use of memory. A suite makes and frees maps of the
-// same sizes again and again.
+// main of the test executables: GoogleTest's, with the memory settings of the program, because a suite allocates and
+// frees maps of the same sizes again and again.
 
 #include "base/memory.hpp"
 

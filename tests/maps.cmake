@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The image-based family against closed forms and the twins of its products.
+# Tests of the image-based family, compared with closed forms and with second implementations of its intermediate
+# results.
 penumbra_test(maps FULL MapsTable.*
   SOURCES
   analytic/maps/adaptive_light.cpp

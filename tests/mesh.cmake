@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges, diagnosis.
+# Tests of meshes: readers through the child process, exact predicates, the edge graph, silhouettes, half-edges,
+# diagnosis.
 find_package(CGAL REQUIRED)
 penumbra_test(mesh FULL CgalMeshes.All
   SOURCES
@@ -22,11 +23,11 @@ penumbra_test(mesh FULL CgalMeshes.All
   unit/mesh/readers_xml.cpp
   unit/mesh/soup_ply.cpp
   APART property/mesh/diagnosis_oracle.cpp
-  # GMP's rationals are the judge of the exact predicates: another library, another formula.
+  # GMP's rationals check the exact predicates: an independent library and formula.
   LIBRARIES penumbra_mesh CGAL::CGAL PkgConfig::MINIZIP nlohmann_json::nlohmann_json ${RAPIDCHECK} TBB::tbb gmpxx gmp)
 penumbra_cgal_corpus(mesh_test)
 if(PENUMBRA_WITH_CGAL_GPL)
-  # Polygon_mesh_processing is GPL: of programs, penumbra-repair alone has it, and tests.
+  # Polygon_mesh_processing is under the GPL: among the programs, penumbra-repair alone uses it; tests may, too.
   target_compile_definitions(mesh_test PRIVATE PENUMBRA_WITH_CGAL_GPL)
   add_dependencies(mesh_test penumbra-repair)
   target_sources(mesh_test PRIVATE agreement/mesh/diagnosis_cgal.cpp)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Methods that take pairs away triangle by triangle, against the exact decision.
+# Tests of methods that decide pairs one triangle at a time, compared with the exact decision.
 penumbra_test(pairs
   SOURCES
   agreement/volumes/soft_irregular.cpp

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The ray caster against closed forms and exact predicates. No device.
+# Compares the ray caster with closed forms and exact predicates. No device.
 penumbra_test(reference
   SOURCES
   analytic/ray_traced_closed_forms.cpp

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Repair, and the program that does it.
+# Tests of repair, and of the program that does it.
 if(PENUMBRA_WITH_CGAL_GPL)
   penumbra_test(repair SOURCES unit/repair/helper.cpp unit/repair/repair.cpp LIBRARIES penumbra_repair penumbra_mesh)
   add_dependencies(repair_test penumbra-repair)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The JSON in a report's page, from which its script draws.
+// Reads the JSON in a report's page, from which the page's script draws.
 
 #include <nlohmann/json.hpp>
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Every method under AddressSanitizer and UndefinedBehaviorSanitizer, in a build of its own.
+# Runs every method under AddressSanitizer and UndefinedBehaviorSanitizer, in a separate build.
 add_test(NAME sanitizers.smoke
          COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/sanitizers/smoke.sh ${PROJECT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/sanitizers)
 set_tests_properties(sanitizers.smoke PROPERTIES LABELS full RUN_SERIAL ON TIMEOUT 7200)

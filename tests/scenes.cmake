@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Scenes (all but glTF), generated shapes, and files that appear whole or not at all.
+# Tests of scenes (all formats but glTF), generated shapes, and files that appear whole or not at all.
 penumbra_test(scenes
   SOURCES
   unit/scenes/atomic_file.cpp
@@ -19,5 +19,5 @@ penumbra_test(scenes
   LIBRARIES penumbra_scenes nlohmann_json::nlohmann_json)
 find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp REQUIRED)  # what the schema of scenes is held against
 target_include_directories(scenes_test SYSTEM PRIVATE ${VALIJSON_INCLUDE_DIR})
-# valijson brings std::regex, of which g++ 12 with sanitizers says falsely that it may be used uninitialised.
+# g++ 12 with sanitizers falsely warns that std::regex, which valijson uses, may be used uninitialised.
 target_compile_options(scenes_test PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The program on a second Vulkan driver for processors, where one is installed.
+# Tests the program on a second Vulkan driver for processors, if one is installed.
 penumbra_test(second_driver
   SOURCES cli/program.cpp cli/second_driver.cpp
   LIBRARIES penumbra_mesh penumbra_base nlohmann_json::nlohmann_json)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The live view: what its server lets in, its state and messages, packets for tev; then the program from outside, by a bare
-# client (Python's standard library), and the page in headless Chromium.
+# Tests of the live view: which requests its server lets in, its state and messages, packets for tev; then the program
+# from outside, by a bare client (Python's standard library), and its page in headless Chromium.
 penumbra_test(view
   SOURCES unit/view/file_watch.cpp unit/view/light_json.cpp unit/view/light_outline.cpp unit/view/live_state.cpp unit/view/pace.cpp unit/view/requests.cpp unit/view/space_meshes.cpp unit/view/space_shadows.cpp unit/view/tev_packets.cpp
   LIBRARIES penumbra_app penumbra_network nlohmann_json::nlohmann_json)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The question itself: scene floats, lights and their samples, the exact truth of a pair, the tree, bits files. No device.
+# Tests of the definition of visibility: scene floats, lights and their samples, the exact truth of a pair, the tree,
+# bits files. No device.
 find_package(CGAL REQUIRED)
 penumbra_test(visibility
   SOURCES
@@ -26,5 +27,5 @@ penumbra_test(visibility
   unit/visibility/sample_patterns.cpp
   unit/visibility/scene_floats.cpp
   unit/visibility/view_samples.cpp
-  # GMP's rationals are the judge of the exact predicates: another library, another formula.
+  # GMP's rationals check the exact predicates: an independent library and formula.
   LIBRARIES penumbra_seen penumbra_visibility CGAL::CGAL TBB::tbb gmpxx gmp)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The shadow-volume family. wedges_test needs no device, volumes_test does.
+# Tests of the shadow-volume family. wedges_test needs no device, volumes_test does.
 find_package(hwy REQUIRED)
 penumbra_test(wedges
   SOURCES

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# View-sample mapping against the exact decision and closed forms.
+# Tests of view-sample mapping, compared with the exact decision and closed forms.
 penumbra_test(vsm
   SOURCES
   agreement/volumes/kept_meshes.cpp
@@ -11,6 +11,7 @@ penumbra_test(vsm
   property/vsm/view_sample_metamorphic.cpp
   property/vsm/view_sample_patterns.cpp
   LIBRARIES penumbra_vsm penumbra_volumes penumbra_reference penumbra_scenes TBB::tbb gmpxx gmp)
-# Lists whose values nobody sets before they are written (base/pages.hpp) hold rubbish here, as they may anywhere.
+# Lists that are allocated without being cleared (base/pages.hpp) are filled with garbage here: results must not depend
+# on it.
 add_test(NAME vsm.unset_memory COMMAND vsm_test --gtest_filter=Kept*:SceneEdges*)
 set_tests_properties(vsm.unset_memory PROPERTIES LABELS quick ENVIRONMENT MALLOC_PERTURB_=165)

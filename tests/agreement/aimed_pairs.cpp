@@ -61,7 +61,7 @@ TEST_P(AimedPairs, EveryPairIsTheExactDecision) {
 TEST_P(AimedPairs, ThousandsFull) {
   for (std::uint32_t first = 1000; first < 4000 && !HasFailure(); first += 500) look(first, 500);
 }
-/// Light samples above one another, at the sides of tiles, where rows have several tiles each.
+/// Light samples in straight columns, at the sides of tiles, with rows of several tiles each.
 using AimedTiles = AimedPairs;
 TEST_P(AimedTiles, EveryPairIsTheExactDecision) {
   look(0, 12, {400, 20, 20, visibility::SamplePattern::grid, 0});

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Scenes in which everything happens within float rounding of a pair: each view sample has a triangle of its own that
-// is aimed at one of its light samples. Where an error bound is too small, some pair is decided wrongly, and exact
-// predicates show it.
+// Scenes in which everything happens within float rounding of a pair: each view sample has its own triangle, aimed at
+// one of its light samples. If an error bound is too small, some pair is decided wrongly, and exact predicates show it.
 
 #include "mesh/predicates.hpp"
 #include "tests/agreement/crossings.hpp"
@@ -24,28 +23,28 @@
 
 namespace penumbra::tests {
 
-/// The part of a triangle that a pair's segment passes, or another thing that the segment comes near.
+/// The part of a triangle that a pair's segment passes, or another object that the segment comes near.
 enum class Aim : std::uint8_t {
   edge,     ///< an edge through the light sample, as seen from p
-  aligned,  ///< the same, along one of the light's sides
+  aligned,  ///< the same, parallel to one of the light's sides
   corner,   ///< an edge through the light's corner, where rows and columns begin
   left,     ///< an edge through the light's left side, at the height of a light sample
   vertex,   ///< a vertex on the light sample
   row,      ///< a vertex at the height of a row
   sliver,   ///< p in the triangle's plane, and near the triangle's edges or in it
-  grazing,  ///< an edge just above p, which appears far away
+  grazing,  ///< an edge just above p, so that it appears far away
   horizon,  ///< p's own plane through the light sample
   side,     ///< p in the plane of a triangle that stands above it on a narrow foot, under a panel
   det,      ///< p in the plane of a triangle that stands above it on a wide foot
-  needle,   ///< the light's corner in a needle between two triangles of a sheet
-  beside,   ///< an edge on the other side of the light sample than where its place is computed to be
+  needle,   ///< the light's corner inside a needle between two triangles of a sheet
+  beside,   ///< an edge whose place is computed to be on the wrong side of the light sample
 };
 inline constexpr std::array kAims{Aim::edge,    Aim::corner,  Aim::left, Aim::vertex, Aim::row,   Aim::sliver,
                                   Aim::grazing, Aim::horizon, Aim::side, Aim::det,    Aim::needle};
-/// Measures that the search maximises over scenes: how much of a bound is used. The last is of edge-scatter on the
-/// device alone, with the bound of light samples in rows; 64 anywhere have the same cells.
+/// Aims for which the search maximises the used share of a bound over scenes. The last, `beside`, is for edge-scatter
+/// on the device alone, with the bound of light samples in rows; 64 samples anywhere have the same cells.
 inline constexpr std::array kSearchedAims{Aim::side, Aim::det, Aim::needle, Aim::beside};
-/// The share of the bound that planted_faults leaves of it.
+/// The share of the bound that remains after tests/planted_faults has cut it.
 inline double planted_cut(Aim aim) {
   return aim == Aim::det ? 1.0 / 256 : 0.01;
 }
@@ -59,15 +58,15 @@ class AimedScene {
  public:
   static constexpr visibility::SampleRequest kInRows{64, 8, 8, visibility::SamplePattern::rows, 0};
 
-  /// 64 view samples; as many light samples in rows, or those that are asked for.
+  /// Makes 64 view samples, and 64 light samples in rows or those of `request`.
   AimedScene(Aim aim, std::uint32_t seed, const visibility::SampleRequest& request = kInRows)
       : aim_(aim), random_(seed) {
     scenes::Scene scene;
-    // Keeps the origin of scene floats at zero, whatever is added.
+    // Keeps the origin of scene floats at zero, whatever else is added.
     add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}}).casts_shadow = false;
     // Sizes range from a speck to the whole floor: view samples are near one another, and far from zero. The searched
-    // aims use most of their bounds where coordinates are no larger than lengths; det uses most of its bound where the
-    // light is a square, and overhead.
+    // aims use most of their bounds if coordinates are no larger than lengths; `det` uses most of its bound if the
+    // light is square and overhead.
     const double patch = std::exp2(-static_cast<double>(random_() % 8)),
                  size = std::exp2(1 - static_cast<double>(random_() % 6)), askew = aim_ == Aim::det ? 0.05 : 1;
     const glm::dvec3 middle = (aim_ >= Aim::side ? 0.25 : 1.0) * glm::dvec3(4 * real(), real(), 4 * real());
@@ -99,8 +98,8 @@ class AimedScene {
       places.push_back(st);
       const glm::dvec3 a = rounded(carrier[0]), b = rounded(carrier[1]), c = rounded(carrier[2]);
       points.emplace_back(glm::vec3(a + st.x * (b - a) + st.y * (c - a)));
-      // Only some view samples are aimed at: where they are near one another, all triangles are between each of them
-      // and the light.
+      // Only some view samples are aimed at: if they are near one another, all triangles are between each of them and
+      // the light.
       const std::uint32_t every = aim_ == Aim::sliver || aim_ >= Aim::grazing ? 8 : 3;
       if (aim_ == Aim::horizon || i % every != 0) continue;
       const glm::dvec3 p(points.back());
@@ -113,7 +112,7 @@ class AimedScene {
         casters.push_back(aim_ == Aim::side || aim_ == Aim::det ? standing(p, l) : aimed(p, glm::dvec3(l), size));
       }
     }
-    if (aim_ == Aim::side) {  // over half of the light: one layer that a wrong sign takes away
+    if (aim_ == Aim::side) {  // over half of the light: a wrong sign removes its one layer
       const glm::dvec3 center(light.center), half_u = 0.5 * (glm::dvec3(light.center_u) - center);
       const std::vector<Corners> panel =
           quad(center + 0.125 * (middle - center) + half_u, half_u, 1.5 * (glm::dvec3(light.center_v) - center));
@@ -129,7 +128,7 @@ class AimedScene {
   visibility::SceneFloats floats;
   visibility::Light light;
   visibility::ViewSamples samples;
-  double used = 0;  ///< of kSearchedAims: the share of its bound that it takes to see that a sign is wrong
+  double used = 0;  ///< for kSearchedAims: the share of the bound that is needed to notice that a sign is wrong
 
  private:
   static constexpr std::uint32_t kSide = 8;
@@ -140,7 +139,7 @@ class AimedScene {
   glm::dvec3 vector() { return glm::dvec3(real(), real(), real()) + glm::dvec3(0x1p-30); }
   static glm::dvec3 rounded(const glm::dvec3& x) { return glm::dvec3(glm::vec3(x)); }
 
-  /// The triangle that is aimed at a pair.
+  /// Returns the triangle that is aimed at a pair.
   Corners aimed(const glm::dvec3& p, glm::dvec3 l, double light_size) {
     const glm::dvec3 center(light.center), u = glm::dvec3(light.center_u) - center,
                                            v = glm::dvec3(light.center_v) - center;
@@ -152,7 +151,8 @@ class AimedScene {
     // The triangle covers a few light samples as seen from p, and sometimes many more.
     const double share = 0.05 + 0.9 * positive();
     double size = share * light_size * (random_() % 8 == 0 ? 4 : std::exp2(-0.5 - 2.5 * positive()));
-    // An edge that passes the corner matters most if no light row crosses it: half a cell is an eighth of the light.
+    // An edge that passes the corner matters most if no row of light samples crosses it: half a cell is an eighth of
+    // the light's half-size.
     if (aim_ == Aim::corner && random_() % 2 == 0) size /= 16;
     const glm::dvec3 at = p + share * direction,
                      e = aim_ == Aim::aligned ? glm::normalize(random_() % 2 == 0 ? u : v) : glm::normalize(vector()),
@@ -161,13 +161,13 @@ class AimedScene {
       case Aim::vertex:
       case Aim::row:
         return {at, at + size * e, at + size * f};
-      case Aim::sliver: {  // p = a + α (b − a) + β (c − a), outside beside an edge or inside
+      case Aim::sliver: {  // p = a + α (b − a) + β (c − a), just outside an edge or inside
         const glm::dvec3 a = at + 0.1 * size * e, b = p + share * positive() * (direction + size / share * f);
         const bool inside = random_() % 2 == 0;
         const double alpha = inside ? -positive() : positive(), beta = inside ? -positive() : real();
         return {a, b, p + alpha * (a - p) + beta * (b - p)};
       }
-      case Aim::grazing: {  // low over p: its ends appear far away, or as near as a small height allows
+      case Aim::grazing: {  // low above p: its ends appear far away, or as near as a small height allows
         const double low = std::exp2(-4 - 16 * positive());
         const glm::dvec3 near = p + low * direction, along = glm::normalize(glm::cross(direction, e));
         const double wide = 16 * low / share * size;
@@ -187,9 +187,9 @@ class AimedScene {
     return at;
   }
 
-  /// A triangle above p that hides l, with p within rounding of its plane. Of many it is that where the sign of p's
-  /// side is wrong by most. l is farther from the plane than p, so that the triangle's edges pass at some distance from
-  /// it.
+  /// Returns a triangle above p that hides l, with p within rounding of its plane: of many, the one for which the sign
+  /// of p's side is most wrong. l is farther from the plane than p is, so that the triangle's edges pass at some
+  /// distance from l.
   Corners standing(const glm::dvec3& p, const glm::vec3& l) {
     const glm::dvec3 direction = glm::dvec3(l) - p;
     const double length = glm::length(direction);
@@ -197,9 +197,9 @@ class AimedScene {
     const auto make = [&](Numbers numbers) -> Corners {
       const glm::dvec3 e = glm::normalize(glm::cross(direction, numbers.vector())),
                        n = glm::cross(direction, e) / length;
-      // Relative to the length of the segment: the foot's height and half its width, p's distance from the plane, and
-      // l's. The bound of det grows with the foot; the other bound grows with the distance of the first corner alone,
-      // which then must be the top.
+      // Relative to the length of the segment: the foot's height and half its width, and the distances of p and l from
+      // the plane. The bound of `det` grows with the foot; the other bound grows only with the distance of the first
+      // corner, which therefore must be the top.
       const double low = std::exp2(-3 - 10 * numbers.next());
       const auto wide = [&] { return numbers.next() * (on_wide_foot ? 1 : low); };
       const double off = std::exp2((on_wide_foot ? -18 : -23) - 6 * numbers.next()),
@@ -218,8 +218,8 @@ class AimedScene {
     return make(best);
   }
 
-  /// A triangle with an edge that passes the light sample: of many that which is computed to pass on the other side by
-  /// most.
+  /// Returns a triangle with an edge that passes the light sample: of many, the one that is computed to pass farthest
+  /// on the wrong side.
   Corners passing(const glm::vec3& p, std::uint32_t sample, double width) {
     const std::uint32_t row = sample / light.columns, column = sample % light.columns;
     const glm::dvec3 to_next = glm::dvec3(frame_.u) * (2.0 / static_cast<double>(light.columns));
@@ -242,8 +242,8 @@ class AimedScene {
     return make(best);
   }
 
-  /// Two triangles side by side that cover the light's corner and what is around it, and between them one that is as
-  /// narrow as floats let it be: the corner is in it. Of many it is that which rounding mirrors by most.
+  /// Returns two triangles side by side that cover the light's corner and its surroundings, and between them one as
+  /// narrow as floats allow, with the corner in it: of many, the one that rounding mirrors most.
   std::vector<Corners> needle(const glm::dvec3& p, double light_size) {
     const glm::dvec3 center(frame_.center), direction = center - glm::dvec3(frame_.u) - glm::dvec3(frame_.v) - p;
     const auto make = [&](Numbers numbers) -> std::vector<Corners> {
@@ -251,7 +251,7 @@ class AimedScene {
       const glm::dvec3 at = p + share * direction, e = glm::normalize(numbers.vector()),
                        f = glm::normalize(glm::cross(direction, e));
       const glm::dvec3 a = rounded(at + size * e), b = rounded(at - (0.4 + 0.6 * numbers.next()) * size * e);
-      glm::dvec3 c = b;  // beside it by no more than a unit in the last place of each coordinate
+      glm::dvec3 c = b;  // differs from b by at most a unit in the last place of each coordinate
       for (int axis = 0; axis < 3; ++axis)
         c[axis] += std::ldexp(std::round(1.5 * numbers.real()), std::ilogb(b[axis]) - 23);
       return {{a, b, rounded(at - size * f)}, {a, b, c}, {a, c, rounded(at + size * f)}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mask methods and the ray caster on meshes that are broken: every defect of the generator, random soups on a
+// Compares the mask methods with the ray caster on broken meshes: every defect of the generator, random soups on a
 // lattice, and the meshes of CGAL's demos, many of which are flawed.
 
 #include "tests/agreement/differences.hpp"
@@ -14,8 +14,8 @@ namespace {
 
 using tests::Differences;
 
-/// Expects that at most the share `allowed` of all pairs differs, and that the mask method is right about each pair
-/// that differs and is judged.
+/// Expects that at most the share `allowed` of all pairs differs, and that the mask method is right about each
+/// differing pair that is decided exactly.
 void expect_agreement(const std::string& name, const Differences& found, double allowed = 2e-5) {
   EXPECT_GT(found.pairs_all, 0U) << name;
   EXPECT_LE(static_cast<double>(found.differing), allowed * static_cast<double>(found.pairs_all)) << name;
@@ -89,7 +89,7 @@ TEST_P(CgalMeshes, ADozen) {
   }
 }
 
-/// Open, self-intersecting, shuffled, degenerate: every differing pair is judged.
+/// Open, self-intersecting, shuffled, degenerate meshes: every differing pair is decided exactly.
 TEST_P(CgalMeshes, FlawedOnesFull) {
   for (const char* name : {"diplodocus", "cow", "cube-shuffled", "cube4-shuffled", "blobby-shuffled", "oblong-shuffled",
                            "tet-shuffled", "boeing", "mannequin-devil", "elephant-with-holes", "degtri_sliding",

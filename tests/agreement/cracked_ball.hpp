@@ -10,7 +10,7 @@
 
 namespace penumbra::tests {
 
-/// A ball of some 240 triangles of which one in sixteen is missing.
+/// Returns a ball of about 240 triangles, of which one in sixteen is missing.
 inline std::vector<Corners> cracked_ball(const glm::dvec3& middle, double radius, std::mt19937& random) {
   const auto on_ball = [&](int i, int j) {
     const double a = i * std::numbers::pi / 8, b = j * std::numbers::pi / 8;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The position at which edge-scatter has an edge cross the row of a light sample, and the true one. A search maximises
-// their difference over the bound.
+// The place where edge-scatter computes an edge to cross the row of a light sample, and the exact place. A search
+// maximises their difference relative to its bound.
 
 #include "base/size1.hpp"
 #include "tests/agreement/device_twins.hpp"
@@ -22,18 +22,18 @@
 
 namespace penumbra::tests {
 
-/// An edge's ends on the light as computed, in cells, and what bounds their errors.
+/// An edge's ends on the light as computed, in cells, and the bounds of their errors.
 struct PlacedEnds {
   std::array<glm::vec2, 2> at{};
   std::array<float, 2> error{};
 };
-/// A light sample of a row: in column `column` before the row's shift.
+/// A light sample of a row: in column `column`, before the row's shift.
 struct CellOfRow {
   float row = 0, column = 0, shift = 0;
 };
 
 /// Returns the exact distance from the light sample to the place where the edge (a, b) crosses the sample's row, in
-/// columns. `step`: from column to column.
+/// columns. `step` leads from one column to the next.
 inline long double exact_crossing(const glm::vec3& p, const glm::vec3& l, const std::array<glm::vec3, 2>& edge,
                                   const glm::dvec3& step) {
   using Exact = glm::tvec3<long double>;
@@ -41,8 +41,8 @@ inline long double exact_crossing(const glm::vec3& p, const glm::vec3& l, const 
   return -glm::dot(normal, Exact(l) - from) / glm::dot(normal, Exact(step));
 }
 
-/// Returns the same distance as both engines compute it (docs/edge-scatter.md, Crossing); nothing if the edge ends near
-/// the row.
+/// Returns the same distance as both engines compute it (docs/edge-scatter.md, Crossing), or an empty result if the
+/// edge ends near the row.
 inline Rounded crossing_as_rounded(const PlacedEnds& ends, const glm::vec2& half_cells, const CellOfRow& sample,
                                    long double exact) {
   constexpr float kRound = 0x1p-24F;
@@ -61,8 +61,8 @@ inline Rounded crossing_as_rounded(const PlacedEnds& ends, const glm::vec2& half
   return {(x - sample.shift) - sample.column, exact, static_cast<long double>(bound)};
 }
 
-/// Computes where a point appears from p as the device does, and the bound of the error (docs/edge-scatter.md, X).
-/// Nothing cuts the scene at the light's plane.
+/// Computes where a point appears from p as the device does, and the bound of the error (docs/edge-scatter.md, X). The
+/// light's plane must not cut the scene.
 class DevicePlaces {
  public:
   DevicePlaces(const visibility::DeviceLight& light, const glm::vec3& p, const glm::vec2& half_cells)
@@ -98,8 +98,8 @@ class DevicePlaces {
 };
 
 /// Returns a triangle between p and the light sample l whose first side passes through the segment from p to l, up to
-/// the rounding of its corners to floats. `numbers`: of a search, which chooses place, direction and size. `width`: of
-/// the light, across.
+/// the rounding of its corners to floats. `numbers` come from a search and choose place, direction and size. `width` is
+/// the light's.
 inline std::array<glm::dvec3, 3> triangle_at(const glm::dvec3& p, const glm::dvec3& l, double width, Numbers& numbers) {
   const glm::dvec3 direction = l - p, across = numbers.vector() + glm::dvec3(0x1p-30);
   const double share = 0.1 + 0.8 * numbers.next(), size = share * width * std::exp2(1 - 2 * numbers.next());

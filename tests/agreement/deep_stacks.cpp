@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests stacks with so many layers between view samples and light that a count of one byte would begin again at 0.
+// Tests stacks with so many layers between view samples and light that a count in one byte would overflow to 0.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using DeepStacks = tests::DeviceTest;
 
-/// Thin boxes, one over the other, over half of a floor; all end over x = 0.
+/// Returns thin boxes, one above the other, over half of a floor; all end at x = 0.
 scenes::Scene stack_over_floor(int boxes) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Signs that passes on the device take in floats, as they compute them and as they are, and what bounds the difference.
-// The numbers are the device's, operation by operation (a driver may sum in another order); exact ones are taken in
-// long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴ and more. Nothing is scaled: scales are powers of two.
+// Signs that passes on the device compute in floats: the computed number, the exact number and the bound of the
+// difference. The computed numbers repeat the device's operations one by one (a driver may sum in another order); exact
+// ones are in long double, whose error of 2⁻⁶⁴ is small compared with bounds of 2⁻²⁴ and more. Nothing is scaled,
+// because scales are powers of two.
 
 #include "visibility/lights/device_light.hpp"
 #include "volumes/edges/plane_normal.hpp"
@@ -21,21 +22,21 @@ namespace penumbra::tests {
 
 using FloatCorners = std::array<glm::vec3, 3>;
 
-/// A number as the device rounds it, what it is, and the bound of the difference.
+/// A number as the device rounds it, its exact value, and the bound of the difference.
 struct Rounded {
   float value = 0;
   long double exact = 0, bound = 1;
 
-  /// Returns the share of the bound that leaves a wrong sign unnoticed: any smaller bound would trust it. 0 if the sign
-  /// is right.
+  /// Returns the share of the bound below which a wrong sign would be trusted: any smaller bound would miss the error.
+  /// 0 if the sign is right.
   [[nodiscard]] double wrong() const { return value * exact < 0 ? static_cast<double>(std::abs(value) / bound) : 0; }
-  /// Returns wrong(), but no more than the number itself is off 0.
+  /// Returns wrong(), but at most the share of the bound by which the exact number differs from 0.
   [[nodiscard]] double far_wrong() const { return std::min(wrong(), static_cast<double>(std::abs(exact) / bound)); }
 };
 
-constexpr long double kHalfUlp = 0x1p-24L;  // of 1: ε of the pages
+constexpr long double kHalfUlp = 0x1p-24L;  // half an ulp of 1: ε in docs/
 
-/// n · (p − a), the side of a triangle that p is on. (docs/edge-scatter.md, Side)
+/// Computes n · (p − a), whose sign is the side of a triangle on which p is. (docs/edge-scatter.md, Side)
 inline Rounded side_as_rounded(const FloatCorners& corners, const glm::vec3& p) {
   using Exact = glm::tvec3<long double>;
   const Exact a(corners[0]), normal = glm::cross(Exact(corners[1]) - a, Exact(corners[2]) - a);
@@ -57,7 +58,7 @@ T det(const visibility::DeviceLight& light, const FloatCorners& corners, const g
   return glm::dot(glm::cross(to_light(a - p), to_light(V(corners[1]) - a)), to_light(V(corners[2]) - a));
 }
 
-/// The light's frame, two cells to a side or `half_cells` twice, and what of p depends on it.
+/// The light's frame, with two cells along a side or twice `half_cells`, and the values that depend on p.
 template <typename T>
 struct Frame {
   Frame(const visibility::DeviceLight& light, const glm::vec3& from, const glm::vec2& half_cells = glm::vec2(1))
@@ -79,7 +80,8 @@ struct Frame {
   V2 foot, lean;
 };
 
-/// A triangle from p, the segment to the light's lower left corner as third axis: heights over p, and what decides.
+/// A triangle as seen from p, with the segment to the light's lower left corner as third axis: heights above p, and the
+/// products that decide.
 template <typename T>
 struct AlongSegment {
   AlongSegment(const Frame<T>& frame, const FloatCorners& corners) {
@@ -96,12 +98,12 @@ struct AlongSegment {
 
   glm::tvec3<T> height{0};
   std::array<glm::tvec2<T>, 3> x;
-  std::array<T, 3> f{};  // of ab, bc, ca
+  std::array<T, 3> f{};  // products of ab, bc, ca
 };
 
 }  // namespace twins
 
-/// det[A, B, C], whose sign is the side of the triangle that p is on. (docs/view-sample.md, bound det)
+/// Computes det[A, B, C], whose sign is the side of the triangle on which p is. (docs/view-sample.md, bound det)
 inline Rounded det_as_rounded(const visibility::DeviceLight& light, const FloatCorners& corners, const glm::vec3& p) {
   const glm::vec3 towards = light.center - p, e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
   const float size = std::max(glm::length(light.u), glm::length(light.v)),
@@ -111,14 +113,14 @@ inline Rounded det_as_rounded(const visibility::DeviceLight& light, const FloatC
           256 * kHalfUlp * static_cast<long double>(r * r * size * size * lengths)};
 }
 
-/// The products of ab, bc, ca that say how the segment from p to the light's lower left corner passes a triangle
-/// (docs/edge-scatter.md, Corner), and whether p sees the triangle counter-clockwise: 1, −1.
+/// The products of ab, bc, ca, whose signs show how the segment from p to the light's lower left corner passes a
+/// triangle (docs/edge-scatter.md, Corner), and whether p sees the triangle counter-clockwise (1) or not (−1).
 struct CornerProducts {
   std::array<Rounded, 3> f;
   int turn = 0;
 
-  /// Returns the share of the bounds that leaves it unnoticed that the rounded products have the segment in the
-  /// triangle's mirror image; 0 if they have not.
+  /// Returns the share of the bounds that is needed to notice that by the rounded products the segment passes the
+  /// triangle's mirror image; 0 if it does not.
   [[nodiscard]] double wrong() const {
     double least = 1;
     for (const Rounded& x : f) {

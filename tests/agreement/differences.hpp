@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// A mask method and the ray caster, pair by pair on the same view and light samples. They share no code that decides
-// anything: hierarchies of shafts and float arithmetic with error bounds here, Embree's rays there. Where they differ,
-// the exact decision says who is right.
+// Compares a mask method with the ray caster, pair by pair on the same view and light samples. They share no code that
+// decides anything: here hierarchies of shafts and float arithmetic with error bounds, there Embree's rays. Where they
+// differ, the exact decision shows which of them is right.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
@@ -71,7 +71,7 @@ inline void print(const std::string& name, const Differences& found) {
       found.mapped_right);
 }
 
-/// Both methods, kept from picture to picture: making them costs more than a small picture.
+/// Both methods, kept between pictures: making them costs more than a small picture.
 class BothMethods {
  public:
   explicit BothMethods(const render::Device& device, const MaskMethod& mapped = kViewSample)
@@ -94,7 +94,7 @@ class BothMethods {
   std::unique_ptr<visibility::Method> map_, trace_;
 };
 
-/// A floor under a rectangle light and, as an object of its own, the soup without any change.
+/// Returns a floor under a rectangle light and, as a separate object, the unchanged soup.
 inline scenes::Scene with_a_floor(const mesh::TriangleSoup& soup) {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));
@@ -112,7 +112,7 @@ inline scenes::Scene with_a_floor(const mesh::TriangleSoup& soup) {
   return scene;
 }
 
-/// Two units high, or four wide if that is smaller; its bottom on the floor.
+/// Scales and moves the soup to a height of 2, or a width of 4 if that makes it smaller, with its bottom on the floor.
 inline mesh::TriangleSoup fitted(mesh::TriangleSoup soup) {
   glm::dvec3 low(std::numeric_limits<double>::max()), high(-low);
   for (const mesh::Triangle& triangle : soup.triangles) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes: masks of every method against the exact decision of each pair, areas of two arithmetics against one another
-// and against many light samples.
+// Tests domes: masks of every method against the exact decision of each pair; areas of two arithmetics against each
+// other and against many light samples.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/unit/dome_stage.hpp"
@@ -35,8 +35,8 @@ scenes::Dome some_dome(std::uint32_t seed) {
   return dome;
 }
 
-/// Soups of triangles in general position, or on a lattice, where the faces' axes and the light samples of a dome with
-/// an axis as `up` meet edges and planes exactly.
+/// Returns soups of triangles in general position, or on a lattice on which the faces' axes and the light samples of a
+/// dome with an axis as `up` meet edges and planes exactly.
 scenes::Scene soup_under_dome(std::uint32_t seed) {
   std::mt19937 random(seed);
   if (seed % 2 == 0) {
@@ -52,7 +52,7 @@ scenes::Scene soup_under_dome(std::uint32_t seed) {
   return scene;
 }
 
-/// A picture whose texels' middles, 8 by 4, are directions along axes and diagonals.
+/// Returns a picture of 8 by 4 texels, whose middles are directions along axes and diagonals.
 scenes::Texture lattice_sky() {
   scenes::Texture sky{"made by hand", 8, 4, std::vector<glm::vec3>(32)};
   for (std::size_t i = 0; i < sky.texels.size(); ++i)
@@ -60,7 +60,7 @@ scenes::Texture lattice_sky() {
   return sky;
 }
 
-/// Counts the pairs of all seeds that run: with those of label full ten million.
+/// Counts the pairs of all seeds that run: ten million with the seeds of label full.
 class DomePairs : public testing::TestWithParam<std::uint32_t> {
  protected:
   static void SetUpTestSuite() { compared_ = blocked_ = 0; }
@@ -137,8 +137,7 @@ TEST_P(DomeAreas, AgreeWithOneAnotherAndWithManySamples) {
     largest = std::max(largest, std::abs(rows.form_factors[i].x - exact.form_factors[i].x));
     EXPECT_NEAR(v, exact.masks.visibility[i], 2e-7) << i;
     EXPECT_NEAR(rows.form_factors[i].x, exact.form_factors[i].x, 1e-7) << i;
-    // For half a dome that leans away, few light samples are above the plane, and they carry little of the dome's
-    // light.
+    // If half a dome leans away, few light samples are above the plane, and they carry little of the dome's light.
     const double whole = visibility::dome_form_factor(stage.light, glm::normalize(glm::dvec3(stage.samples.n[i])));
     EXPECT_NEAR(whole * v, whole * samples.masks.visibility[i], 0.02) << i;
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact area against CGAL's Boolean set operations: projected triangles joined one by one in an exact kernel, cut
-// from the light; what is left of the square around a disk, intersected with the circle in numbers a + b √c. Nothing is
-// shared with the sweep but the question.
+// Compares the exact area with CGAL's Boolean set operations: projected triangles are joined one by one in an exact
+// kernel and subtracted from the light. For a disk, the rest of the square around it is intersected with the circle, in
+// numbers a + b √c. No code is shared with the sweep.
 
 #include "tests/unit/exact_area_soups.hpp"
 
 #include <gtest/gtest.h>
 
-// g++ 12 sees an uninitialised number in CGAL's own filtered predicates of circles.
+// g++ 12 falsely warns of an uninitialised number in CGAL's filtered predicates of circles.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -85,7 +85,7 @@ CirclePolygon of_segments(const Polygon2& straight) {
   return polygon;
 }
 
-/// ½ ∮ x dy − y dx: chords and arcs of the unit circle, whose ends alone are rounded.
+/// Returns ½ ∮ x dy − y dx over chords and arcs of the unit circle; only their ends are rounded.
 double area_of(const CirclePolygon& polygon) {
   double twice = 0;
   for (auto curve = polygon.curves_begin(); curve != polygon.curves_end(); ++curve) {
@@ -95,7 +95,7 @@ double area_of(const CirclePolygon& polygon) {
       twice += ax * by - ay * bx;
       continue;
     }
-    double angle = std::atan2(by, bx) - std::atan2(ay, ax);  // of an arc that is monotone in x: at most π
+    double angle = std::atan2(by, bx) - std::atan2(ay, ax);  // angle of an arc that is monotone in x: at most π
     const bool left = curve->orientation() == CGAL::COUNTERCLOCKWISE;
     if (left && angle < 0) angle += 2 * std::numbers::pi;
     if (!left && angle > 0) angle -= 2 * std::numbers::pi;
@@ -119,7 +119,8 @@ double area_in_disk(const std::list<CGAL::Polygon_with_holes_2<Kernel>>& parts) 
   double area = 0;
   for (const CirclePart& part : left) {
     area += area_of(part.outer_boundary());
-    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole) area += area_of(*hole);  // negative
+    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole)
+      area += area_of(*hole);  // the area of a hole is negative
   }
   return area;
 }
@@ -139,7 +140,8 @@ double area_left(const tests::AreaStage& stage, const glm::vec3& at) {
   std::vector<Point2> outline = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   light.insert(simple_polygon(outline));
   PolygonSet hidden;
-  // Lattice planes that do not contain p stay further from it than 2^-20; so does what is seen on the light.
+  // Lattice planes that do not contain p are at least 2^-20 away from it, and so are the casters that cover any of the
+  // light.
   const Number nearest = reach / (1 << 30);
   for (std::uint32_t i = 1; i < stage.floats.triangles.size(); ++i) {
     if (stage.floats.casts_shadow[i] == 0 || stage.floats.plane[i] == stage.floats.plane[0]) continue;
@@ -164,7 +166,8 @@ double area_left(const tests::AreaStage& stage, const glm::vec3& at) {
   Number area = 0;
   for (const auto& part : parts) {
     area += part.outer_boundary().area();
-    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole) area += hole->area();  // negative
+    for (auto hole = part.holes_begin(); hole != part.holes_end(); ++hole)
+      area += hole->area();  // the area of a hole is negative
   }
   return CGAL::to_double(area / 4);
 }
@@ -180,7 +183,7 @@ TEST_P(ExactAreaBooleans, Agree) {
     for (int i = 0; i < 8; ++i) {
       const glm::vec3 p = tests::soup_receiver(random);
       const double expected = area_left(stage, p);
-      // 1e-12: see exact_area_closed_forms.cpp.
+      // For the tolerance 1e-12 see exact_area_closed_forms.cpp.
       EXPECT_NEAR(stage.visibility(p), expected, 1e-12) << p.x << " " << p.z;
       part += expected > 0 && expected < 1 ? 1 : 0;
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Lamps and what is around them where rounding matters most: panels in, near and through the light's plane, magnitudes
-// that do not fit a float together, needles.
+// Lamps and casters for which rounding matters most: panels in, near and through the light's plane, magnitudes too
+// different for one float, needles.
 
 #include "tests/agreement/support.hpp"
 
@@ -34,7 +34,7 @@ class HostileLamp {
     if (hostility == Hostility::magnitudes) magnitudes();
     if (hostility == Hostility::needles) needles();
     add_object(scene_, "floor", quad({0, -2, 0}, {4, 0, 0}, {0, 0, -4}));
-    // The scene's origin is then 0, and numbers next to 0 stay as small as they are.
+    // The anchor puts the scene's origin at 0, so that numbers next to 0 are not rounded.
     if (below(2) == 0)
       add_object(scene_, "anchor", {{glm::dvec3(-640), glm::dvec3(640, 640, -640), glm::dvec3(640)}}).casts_shadow =
           false;
@@ -52,7 +52,7 @@ class HostileLamp {
   }
   glm::dvec3 lattice_point(int range) { return {lattice(range), lattice(range), lattice(range)}; }
 
-  /// A light: tilted, with coordinates that a float holds exactly or with any; along the axes; long and narrow; with
+  /// Adds a light: tilted, with coordinates that are exact in float or arbitrary; along the axes; long and narrow; with
   /// sides at any angle.
   void lamp() {
     do {
@@ -83,26 +83,26 @@ class HostileLamp {
         panel = {
             {in_plane(lattice(1), lattice(1)), in_plane(lattice(2), lattice(2)), in_plane(lattice(2), lattice(1))}};
       switch (below(6)) {
-        case 0:  // near it: by a unit in the last place, or some
+        case 0:  // near the light's plane: by a unit in the last place, or several
           for (Corners& corners : panel)
             for (glm::dvec3& x : corners) x += std::ldexp(real(), -24 + static_cast<int>(below(8))) * n;
           break;
-        case 1:  // beside it as a whole
+        case 1:  // at a distance from the plane as a whole
           for (Corners& corners : panel)
             for (glm::dvec3& x : corners) x += std::ldexp(1.0, -static_cast<int>(below(40))) * (below(2) == 0 ? n : -n);
           break;
-        case 2:  // through it, along a line through the light or its side
+        case 2:  // through the plane, along a line through the light or its side
           for (Corners& corners : panel)
             for (glm::dvec3& x : corners) {
               const glm::dvec3 off = x - center_ - beside;
               x += std::ldexp(glm::dot(off, u_), -static_cast<int>(below(2) * 20)) * n;
             }
           break;
-        case 3:  // one corner off it
+        case 3:  // with one corner off the plane
           panel[0][below(3)] += real() * n;
           break;
         default:
-          break;  // in it, up to the rounding of its corners
+          break;  // in the plane, up to the rounding of its corners
       }
       soup.insert(soup.end(), panel.begin(), panel.end());
     }
@@ -111,7 +111,7 @@ class HostileLamp {
     for (std::uint32_t count = below(6); count > 0; --count) {
       const glm::dvec3 a = 2.0 * anywhere();
       others.push_back({a, a + anywhere(), a + anywhere()});
-      if (below(3) == 0) others.back()[0] = in_plane(lattice(1), lattice(1));  // up to the light
+      if (below(3) == 0) others.back()[0] = in_plane(lattice(1), lattice(1));  // a corner in the light's plane
     }
     if (below(2) == 0) others.push_back({lattice_point(2), lattice_point(2), lattice_point(2)});
     add_object(scene_, "others", others);

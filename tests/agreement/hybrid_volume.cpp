@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// hybrid-volume: the map's answer where its texels agree, that of shadow volumes elsewhere.
+// Tests hybrid-volume: the map's answer where its texels agree, the answer of shadow volumes elsewhere.
 
 #include "hybrids/methods.hpp"
 
@@ -58,7 +58,7 @@ TEST_F(HybridVolume, AsksVolumesWhereTexelsDisagree) {
     EXPECT_EQ(all.counters.at("silhouettePixels"), silhouettes) << name;
     EXPECT_GT(silhouettes, 20U) << name;
     EXPECT_LT(silhouettes, all.hybrid.size() / 4) << name;
-    // Mostly those near contacts, where the map's bias forgives a shadow.
+    // The differing pixels are mostly near contacts, where the map's bias removes a shadow.
     EXPECT_LT(differing, wrong_map / 2 + 1) << name;
     EXPECT_LT(all.counters.at("countUpdates"), all.of_volumes.at("countUpdates") / 2) << name << ": the mask";
   }
@@ -71,7 +71,7 @@ TEST_F(HybridVolume, IsExactWhereTheMapSeesEveryOutline) {
   EXPECT_NE(all.map, all.volumes);
 }
 
-/// A thing that the map does not see at all, such as a bar between texels' centres, has no silhouette, as published.
+/// An object that the map misses entirely, such as a bar between texels' centres, has no silhouette, as published.
 TEST_F(HybridVolume, WhatNoTexelSeesIsLost) {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0}, {2, 0, 0}, {0, 0, -2}));
@@ -85,13 +85,13 @@ TEST_F(HybridVolume, WhatNoTexelSeesIsLost) {
   EXPECT_EQ(std::ranges::count(all.hybrid, 0.0F), 0);
 }
 
-/// Volumes from a map.
+/// Shadow volumes made from a shadow map.
 class ReconstructedVolume : public HybridVolume {
  protected:
   static std::unique_ptr<visibility::Method> method(const char* size) {
     return hybrids::make_hybrid_volume(device(), {{"variant", "mccool"}, {"size", size}});
   }
-  /// Two boards over a floor, one in the other's shadow in part.
+  /// Two boards over a floor, one of them partly in the other's shadow.
   static scenes::Scene boards() {
     scenes::Scene scene;
     add_object(scene, "floor", quad({0, 0, 0}, {3, 0, 0}, {0, 0, -3}));
@@ -103,10 +103,10 @@ class ReconstructedVolume : public HybridVolume {
   }
 };
 
-/// Walls along texels' borders: of flat boards V is that of the map's nearest texel, from outside, from within the
-/// shadow, and of a hemicube, which a wall up to the light's plane makes of the map. All but a few pixels at outlines
-/// of shadows, or of boards in the picture: a texel reaches up to half of itself beyond the board that it shows, where
-/// a volume without cap is entered unseen.
+/// Volumes whose walls run along texels' borders. For flat boards V equals that of the map's nearest texel: seen from
+/// outside, seen from within the shadow, and with the map as a hemicube, which a wall up to the light's plane makes
+/// necessary. Only a few pixels may differ, at outlines of shadows or of boards in the picture: a texel extends up to
+/// half its size beyond the board that it shows, and there a volume without cap may be entered unnoticed.
 TEST_F(ReconstructedVolume, OfFlatBoardsIsTheMap) {
   for (const std::string place : {"outside", "within the shadow", "hemicube"}) {
     scenes::Scene scene = boards();
@@ -141,7 +141,8 @@ TEST_F(ReconstructedVolume, OfFlatBoardsIsTheMap) {
   }
 }
 
-/// Surfaces hardly shade themselves, without any bias: a map without one has several times as many pixels wrong.
+/// Without any bias, surfaces hardly shade themselves: a shadow map without bias has several times as many wrong
+/// pixels.
 TEST_F(ReconstructedVolume, NeedsNoBias) {
   for (const auto& [name, size] : {std::pair("contact", "256"), std::pair("fusion", "1024")}) {
     const Stage stage = stage_of(shipped_scene(name));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Soups whose corners, light samples and cameras lie on a small integer lattice: coincidences are the rule. What a
+// Soups whose corners, light samples and cameras lie on a small integer lattice: coincidences are the rule. Cases that
 // rounding hides elsewhere (an edge exactly through a light sample, a view sample exactly on another triangle's plane,
-// doubles, coplanar neighbours, triangles without area) happens here all the time.
+// doubles, coplanar neighbours, triangles without area) occur here all the time.
 
 #include "tests/unit/visibility/scenes.hpp"
 
@@ -29,8 +29,8 @@ class LatticeSoup {
   }
   std::mt19937& random() { return random_; }
 
-  /// `count` triangles, each in one of these relations to an earlier one: none, its double (turned and flipped), a
-  /// neighbour at an edge, a coplanar neighbour, without area, on a plane of the lattice.
+  /// Returns `count` triangles, each in one of these relations to an earlier one: none, its double (turned and
+  /// flipped), a neighbour at an edge, a coplanar neighbour, without area, on a plane of the lattice.
   std::vector<Corners> triangles(std::uint32_t count) {
     std::vector<Corners> soup;
     while (soup.size() < count) {
@@ -67,8 +67,8 @@ class LatticeSoup {
     return soup;
   }
 
-  /// A rectangle around a lattice point whose samples, 3×3, 5×5, 3×5 or 1×3 of pattern grid, lie on the lattice.
-  /// Sometimes inside the soup, sometimes above it, mostly parallel to an axis; sometimes two-sided.
+  /// Returns a rectangle around a lattice point whose samples (3×3, 5×5, 3×5 or 1×3 of pattern grid) lie on the
+  /// lattice. It is sometimes inside the soup, sometimes above it, mostly parallel to an axis; sometimes two-sided.
   scenes::AreaLight light(visibility::SampleRequest& request) {
     static constexpr std::pair<std::uint32_t, std::uint32_t> kLayouts[] = {{3, 3}, {5, 5}, {3, 5}, {1, 3}};
     const auto [rows, columns] = kLayouts[below(4)];
@@ -89,8 +89,8 @@ class LatticeSoup {
   int range_;
 };
 
-/// Three objects: one of plain triangles, one that casts no shadow, and the light's body: the light itself as a quad
-/// and a few triangles elsewhere.
+/// Returns a scene of three objects: one of plain triangles, one that casts no shadow, and the light's body: the light
+/// itself as a quad, and a few triangles elsewhere.
 inline scenes::Scene lattice_scene(LatticeSoup& soup, visibility::SampleRequest& request) {
   scenes::Scene scene;
   scene.lights.push_back(soup.light(request));

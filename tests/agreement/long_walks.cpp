@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenes so dense between the view samples and the light that one block of pixels looks at more of a hierarchy than
-// some drivers' loops may turn (65,535 times a workgroup): every engine comes to an end, with the same bits.
+// Tests scenes so dense between the view samples and the light that one block of pixels visits more of a hierarchy than
+// the loops of some drivers allow (65,535 iterations for a workgroup): every engine finishes, with the same bits.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
@@ -11,7 +11,8 @@ namespace {
 
 using LongWalks = tests::DeviceTest;
 
-/// `count` small triangles, without neighbours: each edge is a silhouette from everywhere, so that nothing is left out.
+/// Returns `count` small triangles without neighbours: each edge is a silhouette from everywhere, so that no edge can
+/// be skipped.
 scenes::Scene swarm_over_floor(int count) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -41,7 +42,7 @@ std::uint64_t expect_same_bits(visibility::Method& method, const tests::Stage& s
 
 class LongWalk {
  public:
-  /// `rows`² light samples.
+  /// `rows`: the light has `rows` × `rows` samples.
   LongWalk(const render::Device& device, int triangles, std::uint32_t rows = 4)
       : stage(swarm_over_floor(triangles), 8, 8, {rows * rows, rows, rows, visibility::SamplePattern::rows, 0}),
         expected(tests::run(*tests::kNativeViewSample.make(device, {}), stage.floats, stage.light, stage.samples)) {
@@ -67,7 +68,8 @@ TEST_F(LongWalks, OverEdgesEndWithTheSameBits) {
   }
 }
 
-// Turns run out while edges are counted at light samples, not in a hierarchy: pixels go to the host, whole.
+// The driver's loop limit is reached while edges are counted at light samples, not in a hierarchy: whole pixels are
+// left to the host.
 TEST_F(LongWalks, OverLightSamplesEndWithTheSameBits) {
   const LongWalk walk(device(), 4'000, 32);
   const auto method = tests::kDepthComplexity.make(device(), {});

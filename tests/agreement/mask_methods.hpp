@@ -14,12 +14,12 @@
 
 namespace penumbra::tests {
 
-/// A method that promises every bit to be the truth of its pair.
+/// A method that promises the truth of its pair in every bit.
 struct MaskMethod {
   const char* name;
   std::unique_ptr<visibility::Method> (*make)(const render::Device&, const visibility::MethodOptions&);
-  bool any_light;        ///< otherwise only light samples in rows of a rectangle
-  bool no_rows = false;  ///< gets light samples without the information that they form rows
+  bool any_light;        ///< if false, it supports only light samples in rows of a rectangle
+  bool no_rows = false;  ///< if true, it gets light samples without the information that they form rows
 
   [[nodiscard]] bool on_device() const { return !std::string_view(name).starts_with("native"); }
 
@@ -65,7 +65,7 @@ inline constexpr std::array kMaskMethods{kViewSample, kNativeViewSample, kEdgeSc
 inline constexpr std::array kAllMaskMethods{kViewSample,        kNativeViewSample,     kEdgeScatter,
                                             kNativeEdgeScatter, kEdgeScatterPoints,    kNativeEdgeScatterPoints,
                                             kDepthComplexity,   kNativeDepthComplexity};
-/// Methods that do spheres and suns.
+/// Methods that support spheres and suns.
 inline constexpr std::array kConeMethods{kNativeEdgeScatter, kNativeViewSample, kNativeDepthComplexity};
 
 }  // namespace penumbra::tests

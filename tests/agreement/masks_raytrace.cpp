@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mask methods and the ray caster on every shipped scene.
+// Compares the mask methods with the ray caster on every shipped scene.
 
 #include "tests/agreement/differences.hpp"
 
@@ -35,7 +35,7 @@ class AgreementTest : public AgreementBase,
   }
 };
 
-// A rectangle light whose sides are not quite at right angles, as decimals make them, or far from it.
+// A rectangle light whose sides are not quite perpendicular, because decimals are rounded, or far from it.
 using AgreementOn = AgreementBase;
 TEST_F(AgreementOn, ParallelogramLights) {
   for (const double skew : {1e-4, 0.3, -0.9}) {
@@ -46,9 +46,8 @@ TEST_F(AgreementOn, ParallelogramLights) {
   }
 }
 
-// The panel of a lamp in the plane of a tilted light, over all of the light or a part of it: by a unit in the last
-// place, light samples are in front of the panel or behind it. Rays stop short of that; the exact decision is the
-// judge.
+// A lamp's panel in the plane of a tilted light, over all of the light or a part of it: light samples are in front of
+// the panel or behind it by a unit in the last place. Rays end before that distance; the exact decision decides.
 TEST_F(AgreementOn, PanelsInTheLightsPlane) {
   const glm::dvec3 center(-2.6, 4.2, 2.4), u(0.5208, 0, 0.6076), v(-0.4416, -0.5498, 0.3784);
   for (const auto& [shift, size] : {std::pair(0.0, 2.0), std::pair(-0.7, 0.6)}) {
@@ -67,7 +66,8 @@ TEST_F(AgreementOn, PanelsInTheLightsPlane) {
   }
 }
 
-// Lights whose corners no float holds, small panels in their planes: over a corner, across a side, beside.
+// Lights whose corners are not exact in float, with small panels in their planes: over a corner, across a side, next to
+// the light.
 TEST_F(AgreementOn, PanelsOfRandomLights) {
   for (const tests::MaskMethod& method : tests::kMaskMethods) {
     tests::BothMethods both(device(), method);
@@ -91,8 +91,8 @@ TEST_F(AgreementOn, PanelsOfRandomLights) {
   }
 }
 
-// One method is given one light after another: with a body and without, with planes that cut the scene and planes that
-// do not. Nothing of one light may remain for the next.
+// One method gets one light after another: with a body and without, with planes that cut the scene and planes that do
+// not. Nothing of one light may remain for the next.
 TEST_F(AgreementOn, LightsOneAfterTheOther) {
   mesh::SphereShape ball;
   ball.center = {0.3, 0.8, 0.2};
@@ -147,7 +147,7 @@ TEST_F(AgreementOn, SpheresAndSuns) {
   }
 }
 
-// Triangles smaller than pixels: smaller blocks of pixels have lists of their own.
+// Triangles smaller than pixels: smaller blocks of pixels get separate lists.
 TEST_F(AgreementOn, MeshesFinerThanPixels) {
   mesh::KnotShape knot;
   knot.segments = 1000;
@@ -159,8 +159,8 @@ TEST_F(AgreementOn, MeshesFinerThanPixels) {
   EXPECT_GT(both.mapped().counters().at("denseRegions"), 0U);
 }
 
-// Triangles far smaller than pixels: view samples look for edges alone, in rows also past those between two rows. Rows
-// and tiles of light samples, on the mesh and on the floor beneath.
+// Triangles far smaller than pixels: each view sample searches for edges alone, in rows also for edges between two
+// rows. Rows and tiles of light samples, on the mesh and on the floor below.
 TEST_F(AgreementOn, MeshesFarFinerThanPixels) {
   mesh::KnotShape knot;
   knot.segments = 2000;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that each method does to a flawed mesh what `inspect` says it will, for every method of the table and every
-// defect of the generator. A verdict of "exact" allows no pair that the exact predicates decide otherwise.
+// Tests that each method handles a flawed mesh as `inspect` predicts, for every method of the table and every defect of
+// the generator. A verdict of "exact" allows no pair that differs from the exact predicates.
 
 #include "areas/exact_area.hpp"
 #include "mesh/shapes/broken_meshes.hpp"
@@ -28,7 +28,7 @@ visibility::ViewSamples samples_of(const visibility::SceneFloats& floats, const 
   return session::samples_at(floats, camera, pixels);
 }
 
-/// One defect on a floor, as methods see it.
+/// One defect on a floor, in the form that methods get.
 struct FlawedStage {
   explicit FlawedStage(const std::string& defect)
       : mesh(mesh::make_broken_mesh({{defect}, 2, {0, 1, 0}, 1}).soup),
@@ -78,7 +78,7 @@ std::vector<float> visibility_of(visibility::Method& method, const FlawedStage& 
   return result;
 }
 
-/// Every pair that differs from the ray caster's, and every pair of each sixteenth pixel, must be as the exact
+/// Expects that every pair that differs from the ray caster's, and every pair of each sixteenth pixel, is as the exact
 /// predicates decide it.
 void expect_exact(const std::string& name, const FlawedStage& stage, const Masks& mapped) {
   const Differences found = differences(stage.floats, stage.samples, stage.light, mapped, stage.traced,
@@ -94,8 +94,8 @@ void expect_exact(const std::string& name, const FlawedStage& stage, const Masks
   }
 }
 
-/// V as an exact area: at most the sum of what all layers cover, and less than that by no more than what pairs of
-/// layers have in common. V is stored in float.
+/// Checks V as an exact area: the hidden part is at most the sum of all layers, and less than that by at most the
+/// overlaps of pairs of layers. V is stored in float.
 void expect_exact_area(const std::string& name, const FlawedStage& stage, const std::vector<float>& found) {
   const volumes::Casters casters = volumes::casters_of(stage.floats, stage.light);
   const volumes::SoftVisibility soft(stage.floats, stage.light, casters);
@@ -128,8 +128,8 @@ class MeshVerdicts : public testing::Test {
   static inline std::unique_ptr<render::Machine> machine_;
 };
 
-/// All methods of the table that do rectangles, except the ray caster, which judges them. Maps are small: these methods
-/// are approximate anyway.
+/// Returns all methods of the table that support rectangles, except the ray caster, which is the reference. Maps are
+/// small, as these methods are approximate anyway.
 std::vector<std::unique_ptr<visibility::Method>> make_methods(const render::Machine& machine) {
   std::vector<std::unique_ptr<visibility::Method>> methods;
   for (const visibility::MethodDescription* method : session::all_methods()) {
@@ -142,8 +142,8 @@ std::vector<std::unique_ptr<visibility::Method>> make_methods(const render::Mach
   return methods;
 }
 
-/// Returns the number of pairs that the method decides differently from the ray caster; or the difference of its V from
-/// the area.
+/// Returns the number of pairs that the method decides differently from the ray caster or, if it gives no masks, the
+/// largest difference of its V from the exact area.
 double error_of(visibility::Method& method, const FlawedStage& stage, const std::vector<float>& areas) {
   if (method.description().output == Output::mask) {
     const Masks mapped = run(method, stage.floats, stage.light, stage.samples);
@@ -161,12 +161,12 @@ double error_of(visibility::Method& method, const FlawedStage& stage, const std:
 
 TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   const auto methods = make_methods(machine());
-  std::map<std::string, double> most;  // of those that are approximate, over every sixth defect
+  std::map<std::string, double> most;  // largest errors of the approximate methods, over every sixth defect
   std::set<std::string> exact;
   std::size_t defects = 0;
   for_each_defect([&](const std::string& defect, const FlawedStage& stage) {
     std::vector<float> areas;
-    for (std::size_t i = methods.size(); i-- > 0;) {  // `exact` comes first
+    for (std::size_t i = methods.size(); i-- > 0;) {  // backwards, so that `exact` comes first
       const auto& method = methods[i];
       const visibility::MethodDescription& description = method->description();
       const std::string what = description.name + " of " + defect;
@@ -194,8 +194,8 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   }
 }
 
-/// The variants of depth-complexity: where `laine` is wrong, its verdict must have said so; `forest` errs on one side
-/// only.
+/// The variants of depth-complexity: where `laine` is wrong, its verdict must predict it; where `forest` is wrong, it
+/// is too bright.
 TEST_F(MeshVerdicts, NameWhereVariantsOfDepthComplexityFail) {
   const auto laine = session::make_method("depth-complexity", {{"variant", "laine"}}, machine());
   const auto forest = session::make_method("depth-complexity", {{"variant", "forest"}}, machine());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that methods do what the families' tables say of them.
+// Tests that methods behave as the families' tables describe them.
 #include "session/methods.hpp"
 #include "tests/agreement/support.hpp"
 
@@ -8,7 +8,7 @@
 namespace penumbra::tests {
 namespace {
 
-/// A floor below a plate below a rectangle light, by so many light samples.
+/// Returns a floor below a plate below a rectangle light with the given number of samples.
 Stage plate_over_floor(std::uint32_t samples, const scenes::AreaLight& light) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {4, 0, 0}, {0, 0, 4});
@@ -28,7 +28,7 @@ visibility::MethodOptions small_maps(const visibility::MethodDescription& method
   return options;
 }
 
-/// Returns whether the method takes domes alone.
+/// Returns whether the method supports only domes.
 bool is_of_domes_alone(const visibility::MethodDescription& method) {
   return !method.lights.contains(visibility::LightKind::rectangle);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The search for input that uses most of a bound of error.
+// Searches for input that uses as much as possible of a bound of error.
 
 #include <glm/vec3.hpp>
 
@@ -13,7 +13,7 @@
 
 namespace penumbra::tests {
 
-/// Twenty numbers in [0, 1] that a case is made from, one after the other.
+/// Twenty numbers in [0, 1], from which a case is made one after another.
 class Numbers {
  public:
   double next() { return x_.at(used_++ % x_.size()); }
@@ -33,7 +33,7 @@ class Numbers {
     for (double& x : numbers.x_) x = unit(random);
     return numbers;
   }
-  /// One to three of them others, mostly a little.
+  /// Returns these numbers with one to three of them changed, mostly by little.
   [[nodiscard]] Numbers changed(std::mt19937& random) const {
     Numbers numbers = again();
     for (auto count = 1 + random() % 3; count > 0; --count) {
@@ -52,7 +52,8 @@ class Numbers {
   std::size_t used_ = 0;
 };
 
-/// The numbers of the largest `use(numbers)`: of `tries` at random, and then of as many changes of the best until then.
+/// Returns the numbers with the largest `use(numbers)`: tries random ones `tries` times, and then as many changes of
+/// the best so far.
 template <typename Use>
 Numbers most_used(std::mt19937& random, int tries, Use use) {
   Numbers best = Numbers::at_random(random);

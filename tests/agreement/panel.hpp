@@ -5,7 +5,8 @@
 
 namespace penumbra::tests {
 
-/// A panel, 2.4 wide and 1.2 high, that stands just above the floor; in front of it a board, a post and a shelf.
+/// Returns a panel, 2.4 wide and 1.2 high, that stands just above the floor, with a board, a post and a shelf in front
+/// of it.
 inline scenes::Scene things_before_a_panel() {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0.5}, {2.5, 0, 0}, {0, 0, -1.5}));

@@ -32,7 +32,7 @@ inline std::ostream& operator<<(std::ostream& out, PointLight kind) {
   return out << name_of(kind);
 }
 
-/// Convex polygons, counter-clockwise, with corners on a lattice: a light is an affine image of one.
+/// Returns convex polygons, counter-clockwise, with corners on a lattice: each light is an affine image of one.
 inline const std::vector<std::vector<glm::dvec2>>& lattice_polygons() {
   static const std::vector<std::vector<glm::dvec2>> polygons{
       {{-1, -1}, {1, -1}, {0, 1}},
@@ -44,8 +44,8 @@ inline const std::vector<std::vector<glm::dvec2>>& lattice_polygons() {
   return polygons;
 }
 
-/// Turns a rectangle light into one of that kind about as large, in its plane, and asks for up to `most` samples that
-/// form no rows of a rectangle.
+/// Turns a rectangle light into one of the given kind, about as large and in its plane, and requests up to `most`
+/// samples that form no rows of a rectangle.
 inline void reshape(scenes::AreaLight& light, PointLight kind, visibility::SampleRequest& request, std::mt19937& random,
                     std::uint32_t most) {
   const auto below = [&](std::uint32_t end) { return static_cast<std::uint32_t>(random() % end); };
@@ -77,7 +77,7 @@ inline void reshape(scenes::AreaLight& light, PointLight kind, visibility::Sampl
         return glm::vec3(x + y == 0 ? 1.0F : static_cast<float>(below(4)) / 3.0F);
       });
       request.pattern = below(2) == 0 ? Pattern::sobol : Pattern::jittered;
-      request.count = std::max(request.count, 16U);  // not all on black texels
+      request.count = std::max(request.count, 16U);  // enough that not all are on black texels
       break;
     case PointLight::sobol:
       request.pattern = Pattern::sobol;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadows of things in front of a light that stands on the floor: where V times the unshadowed integral is wrong, how
-// wrong it is, and how far point samples and cells are from `exact`. Prints the table of docs/radiance.md.
+// Measures shadows of objects in front of a light that stands on the floor: where V times the unshadowed integral is
+// wrong, by how much, and how far point samples and cells are from `exact`. Prints the table of docs/radiance.md.
 
 #include "compare/beauty.hpp"
 #include "reference/methods.hpp"
@@ -31,7 +31,7 @@ struct Pictures {
   [[nodiscard]] std::vector<glm::vec3> shade(const LightVisibility& seen) const {
     return integrate_beauty({stage.floats, stage.samples, colors, std::span(&stage.light, 1)}, {&seen, 1});
   }
-  /// Equation 1.3 as it is written: area / N · Σ over visible samples.
+  /// Equation 1.3 literally: area / N · Σ over visible samples.
   [[nodiscard]] std::vector<double> point_samples(const tests::Masks& masks) const {
     std::vector<double> sums(stage.samples.size());
     const glm::dvec3 m(0, 0, 1);
@@ -68,7 +68,7 @@ Exact exact_of(const Stage& stage) {
   return exact;
 }
 
-/// √(mean e²) / mean over the pixels that see a part of the light.
+/// Returns √(mean e²) / mean over the pixels that see only a part of the light.
 class Error {
  public:
   explicit Error(const Exact& exact) : exact_(exact) {}

@@ -2,7 +2,7 @@
 #pragma once
 
 // Support for tests of methods on a device: a device with validation, a run over a whole picture, and the truth of
-// every pair to hold it against.
+// every pair for comparison.
 
 #include "base/error.hpp"
 #include "render/device.hpp"
@@ -34,7 +34,7 @@
 
 namespace penumbra::tests {
 
-/// One device for all tests of a suite, under the validation layer, which must not report anything.
+/// Has one device for all tests of a suite, under the validation layer, which must not report anything.
 class DeviceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { device_ = std::make_unique<render::Device>(render::DeviceOptions{"", true}); }
@@ -49,8 +49,8 @@ class DeviceTest : public testing::Test {
   static inline std::unique_ptr<render::Device> device_;
 };
 
-/// V of a whole picture and, of a method that gives them, masks; `rows_at_once` rows at a time (0: as many as it
-/// takes).
+/// Returns V of a whole picture and, if the method gives them, masks; evaluates `rows_at_once` rows at a time (0: as
+/// many as the method takes).
 inline Masks run(visibility::Method& method, const visibility::SceneFloats& floats, const visibility::Light& light,
                  const visibility::ViewSamples& samples, std::uint32_t rows_at_once = 0) {
   method.prepare_mesh(floats);
@@ -77,7 +77,7 @@ inline Masks run(visibility::Method& method, const Stage& stage, std::uint32_t r
   return run(method, stage.floats, stage.light, stage.samples, rows_at_once);
 }
 
-/// View-sample mapping on the device.
+/// Runs view-sample mapping on the device.
 inline Masks map_view_samples(const render::Device& device, const visibility::SceneFloats& floats,
                               const visibility::Light& light, const visibility::ViewSamples& samples,
                               std::uint32_t rows_at_once = 0) {
@@ -103,7 +103,7 @@ inline std::string text_of(const glm::vec3& v) {
   return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x, v.y, v.z);
 }
 
-/// Returns a light's stored numbers as text: of a sphere its centre and radius, of a sun its directions.
+/// Returns a light's stored numbers as text: the centre and radius of a sphere, the directions of a sun.
 inline std::string text_of(const visibility::Light& light) {
   const std::string kind = visibility::name_of(light.kind), center = text_of(light.center);
   if (light.kind == visibility::LightKind::sphere)
@@ -115,12 +115,12 @@ inline std::string text_of(const visibility::Light& light) {
   return fmt::format("{} {} {} {}", kind, center, text_of(light.center_u), text_of(light.center_v));
 }
 
-/// One pair in numbers, enough to write a test for it alone. The pixel shows a triangle.
+/// Describes one pair in numbers, enough to write a test for it alone. The pixel shows a triangle.
 inline std::string describe_pair(const visibility::SceneFloats& floats, const visibility::ViewSamples& samples,
                                  std::size_t pixel, const visibility::Light& light, std::uint32_t j) {
   const auto truth = visibility::decide_pair(floats, samples, pixel, light, j);
   const auto corners = floats.corners(static_cast<std::uint32_t>(samples.triangle[pixel]));
-  std::vector<glm::vec3> points(light.sample_count());  // a sphere has its own for each p
+  std::vector<glm::vec3> points(light.sample_count());  // a sphere has different points for each p
   visibility::light_points_for(light, samples.p[pixel], points.data());
   return fmt::format("pixel {} sample {}: truth {}{}; p {} facing {} on {} {} {}; l {}; light {}", pixel, j,
                      name_of(truth.outcome), truth.zero_predicate ? " (zero)" : "", text_of(samples.p[pixel]),
@@ -128,7 +128,7 @@ inline std::string describe_pair(const visibility::SceneFloats& floats, const vi
                      text_of(points[j]), text_of(light));
 }
 
-/// Counts of a picture's pairs by outcome, so that a test can say that it saw what it is about.
+/// Counts of a picture's pairs by outcome, so that a test can check that it covered its cases.
 struct PairCounts {
   std::size_t pairs = 0, visible = 0, blocked = 0, horizon = 0, behind = 0, zero = 0;
 
@@ -142,8 +142,8 @@ struct PairCounts {
   }
 };
 
-/// Every pair of every `step`-th pixel against the exact decision; what receives no shadow must be lit whole, the bits
-/// beyond the last sample 0, and V the share of set bits.
+/// Compares every pair of every `step`-th pixel with the exact decision; surfaces that receive no shadow must be fully
+/// lit, the bits beyond the last sample 0, and V the share of set bits.
 inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floats, const visibility::Light& light,
                                              const visibility::ViewSamples& samples, const Masks& masks,
                                              PairCounts* counts = nullptr, std::size_t step = 1) {
@@ -196,7 +196,7 @@ inline testing::AssertionResult equals_truth(const visibility::SceneFloats& floa
   return testing::AssertionFailure() << wrong << " wrong, the first: " << first;
 }
 
-/// The light with its samples not in rows, so that methods take the path for samples anywhere.
+/// Returns the light with its samples not in rows, so that methods take the code path for samples anywhere.
 inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
   light.pattern = visibility::SamplePattern::sobol;
   light.rows = light.columns = 0;
@@ -205,7 +205,7 @@ inline visibility::Light scattered(visibility::Light light, bool as_polygon) {
   return light;
 }
 
-/// A picture below another; the same width.
+/// Appends one picture below another of the same width.
 inline void append(visibility::ViewSamples& to, const visibility::ViewSamples& more) {
   const auto join = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
   to.width = more.width;
@@ -217,8 +217,8 @@ inline void append(visibility::ViewSamples& to, const visibility::ViewSamples& m
   join(to.facing, more.facing);
 }
 
-/// View samples made by hand: on each of `rows` × `width` randomly chosen triangles with area the point
-/// a + s (b − a) + t (c − a) with s, t multiples of ¼, seen from a random side. `object`: on its triangles only.
+/// Makes view samples: on each of `rows` × `width` randomly chosen triangles with area, the point a + s (b − a) + t (c
+/// − a) with s, t multiples of ¼, seen from a random side. `object`: only on triangles of this object.
 inline visibility::ViewSamples samples_on_triangles(const visibility::SceneFloats& floats, std::uint32_t width,
                                                     std::uint32_t rows, std::mt19937& random,
                                                     std::optional<std::uint32_t> object = {}) {
@@ -254,7 +254,7 @@ inline visibility::ViewSamples samples_on_triangles(const visibility::SceneFloat
   return samples;
 }
 
-/// The whole scene, lights and cameras too: world · scale + offset.
+/// Returns the whole scene, with lights and cameras, as world · scale + offset.
 inline scenes::Scene moved(scenes::Scene scene, double scale, const glm::dvec3& offset = glm::dvec3(0)) {
   const auto place = [&](glm::dvec3& point) { point = point * scale + offset; };
   for (glm::dvec3& position : scene.soup.positions) place(position);

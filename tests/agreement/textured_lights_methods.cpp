@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All methods under textured lights: the same pairs as without, V from the weights of what is visible, and beauty.
+// Tests all methods under textured lights: the same pairs as without texture, V from the weights of the visible
+// samples, and beauty.
 
 #include "compare/beauty.hpp"
 #include "maps/sampling/methods.hpp"
@@ -78,7 +79,8 @@ TEST_F(TexturedLightMethods, AConstantTextureGivesTheBytesOfNone) {
   }
 }
 
-/// The half of the scene's light at −axis or at +axis (side −1 or 1), axis its halfU or halfV.
+/// Returns the scene with only one half of its light: the half at −axis or +axis (side −1 or 1), where axis is halfU or
+/// halfV.
 scenes::Scene half_light_scene(glm::dvec3 scenes::Rectangle::*axis, int side) {
   scenes::Scene scene = board_under_light({});
   auto& rectangle = std::get<scenes::Rectangle>(scene.lights[0].shape);
@@ -87,8 +89,8 @@ scenes::Scene half_light_scene(glm::dvec3 scenes::Rectangle::*axis, int side) {
   return scene;
 }
 
-// Sixteen by sixteen cell-centred samples, of which eight by sixteen are on a half: the very points of the half light's
-// own samples, so that V is equal, not nearly so.
+// Sixteen by sixteen samples at the centres of cells, of which eight by sixteen are on a half: exactly the points of
+// the half light's own samples, so that V is equal, not just close.
 const SampleRequest kWhole{256, 16, 16, SamplePattern::grid, 0}, kHalfU{128, 16, 8, SamplePattern::grid, 0};
 
 TEST_F(TexturedLightMethods, HalfBlackIsHalfALight) {
@@ -110,13 +112,13 @@ std::vector<glm::vec3> beauty_of(const Stage& stage, const compare::LightVisibil
 }
 
 TEST_F(TexturedLightMethods, BeautyTakesEachSamplesColour) {
-  // Red above, blue below: the red channel is that of a white light whose lower half is not seen, the blue channel that
-  // of one whose upper half is not seen, up to the order of sums in double and one rounding to float.
+  // Red above, blue below: the red channel is that of a white light whose lower half is hidden, the blue channel that
+  // of one whose upper half is hidden, up to the order of sums in double and one rounding to float.
   const auto texture =
       texture_of(1, 2, [](std::uint32_t, std::uint32_t y) { return y == 0 ? glm::vec3(1, 0, 0) : glm::vec3(0, 0, 1); });
   const Stage colored = stage_with(texture, kWhole), white = stage_with(constant_texture(1, 1, glm::vec3(1)), kWhole);
   const Masks seen = trace(colored);
-  const auto half_of = [&](std::size_t first_word) {  // of eight words, rows from t = −1 upward
+  const auto half_of = [&](std::size_t first_word) {  // keeps half of eight words, whose rows go from t = −1 upward
     std::vector<std::uint32_t> words = seen.words;
     for (std::size_t i = 0; i < words.size(); ++i) words[i] &= i % 8 / 4 == first_word ? 0xffffffffu : 0u;
     return words;

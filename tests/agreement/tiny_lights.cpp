@@ -47,7 +47,7 @@ class TinyLights : public tests::DeviceTest, public testing::WithParamInterface<
   }
 };
 
-/// Found among 2,000: bits that were wrong where only det's bound knew of underflow.
+/// Found among 2,000 seeds: bits that were wrong when only the bound `det` took underflow into account.
 constexpr std::array<std::uint32_t, 5> kUnderflow{500, 736, 1532, 1619, 1814};
 
 TEST_P(TinyLights, AreRight) {

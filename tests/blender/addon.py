@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Blender add-on without Blender: what is in the zip, that all of it compiles, and its parts that know nothing of
-Blender: lamps and lenses, the exchange file, and the pictures that come back. Nodes: addon_nodes.py.
+"""Tests the Blender add-on without Blender: the contents of the zip, that all of it compiles, and its parts that do not
+need Blender: lamps and lenses, the exchange file, and the pictures that come back. Nodes: addon_nodes.py.
 
     addon.py SOURCE ADDON.zip PENUMBRA
 """
@@ -15,7 +15,7 @@ import unittest
 import zipfile
 
 SOURCE, ZIP, PENUMBRA = sys.argv[1:4]
-sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, ZIP)  # tests the code that users get
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
@@ -88,7 +88,7 @@ class Lenses(unittest.TestCase):
         self.assertEqual(lamps.power_of(box(energy=3, color=(1, 0.5, 0), exposure=2)), (12, 6, 0))
 
     def test_regions(self):
-        """The middle of a region, from that of the whole, in heights of the region."""
+        """The middle of a region, computed from that of the whole, in heights of the region."""
         region = frames.Region((200, 100), (50, 20), 150, 10)
         self.assertEqual(region.shift_of_middle(), (75 / 20, -30 / 20))
         whole = self.lens(200, 100)
@@ -107,10 +107,10 @@ class Motion(unittest.TestCase):
             found = motion.moments(7, 1, position, 4, [1] * 257)
             numpy.testing.assert_allclose(found, [first + i / 4 for i in range(4)], rtol=1e-14)
         self.assertEqual(motion.moments(7, 1, "CENTER", 1, [1] * 257), [7])
-        numpy.testing.assert_allclose(motion.moments(0, 2, "START", 2, [0] * 257), [0.5, 1.5])  # never open: evenly
+        numpy.testing.assert_allclose(motion.moments(0, 2, "START", 2, [0] * 257), [0.5, 1.5])  # never open: even spacing
 
     def test_a_shutter_that_opens_slowly(self):
-        """Open by t at time t: by then t² of all has been exposed."""
+        """The shutter is open by a share t at time t: by then t² of the exposure is done."""
         found = motion.moments(0, 1, "START", 8, numpy.linspace(0, 1, 257))
         numpy.testing.assert_allclose(found, numpy.sqrt((numpy.arange(8) + 0.5) / 8), atol=1 / 256 ** 2)
 
@@ -126,8 +126,8 @@ class Motion(unittest.TestCase):
         self.assertIsNone(motion.position_owner(box(render=box())))
 
     def test_another_moment_is_a_file_of_its_own(self):
-        """A thing that moves, one that is there at the second moment alone, and one whose mesh stays in the first file: the
-        picture is that of one file with all of them."""
+        """The second file has an object that moved, one that exists only at that moment, and one whose mesh stays in
+        the first file: the picture is that of one file with all of them."""
         settings = box(method="", exactness=program.EXACT, light_samples=1, pixel_samples=1, pixel_filter=program.BOX, filter_width=1.5,
                        light_cutoff=0, shading_normals=False, lenient=False, device="", light_passes=True)
 
@@ -194,7 +194,7 @@ class Space(unittest.TestCase):
         return space.Placed("It", points, numpy.arange(len(points), dtype=numpy.int32), numpy.eye(4))
 
     def test_distances(self):
-        """Distances to the inside, to an edge, to a corner, and of a flat triangle."""
+        """Distances to points inside, on an edge and at a corner, and those of a degenerate triangle."""
         triangle = numpy.array([[(0, 0, 0), (4, 0, 0), (0, 4, 0)], [(0, 0, 1), (2, 0, 1), (4, 0, 1)]], float)
         for point, wanted in (((1, 1, 3), (3, 5 ** 0.5)), ((1, -2, 0), (2, 5 ** 0.5)), ((-3, -4, 0), (5, 26 ** 0.5))):
             numpy.testing.assert_allclose(space.distances(triangle, numpy.array(point, float)), wanted)
@@ -205,7 +205,8 @@ class Space(unittest.TestCase):
         self.assertEqual(space.Surfaces([]).nearest_to((0, 0, 0), 5), (None, 5))
 
     def test_a_camera_is_sharp_where_cycles_has_it(self):
-        """A lens of 50 mm at f/2 has a radius of 12.5 mm; the object in focus counts along the view axis alone."""
+        """A lens of 50 mm at f/2 has a radius of 12.5 mm; only the distance of the object in focus along the view axis
+        counts."""
         def camera(type="PERSP", **field):
             defaults = dict(use_dof=True, focus_object=None, focus_distance=3.0, aperture_fstop=2.0, aperture_blades=0,
                             aperture_ratio=1.0)
@@ -222,14 +223,15 @@ class Space(unittest.TestCase):
         self.assertEqual(file._document["cameras"][0]["extras"], {"aperture": 0.0125, "focusDistance": 3.0})
 
     def test_what_a_camera_sees(self):
-        """A camera at the origin looks along −Z, half as wide as far on each side; a triangle around all of it counts, one beside it not."""
+        """A camera at the origin looks along −Z and sees half its distance to each side. A triangle around the whole
+        view counts, one beside the view does not."""
         for lens in (dict(half_angle=0.5), dict(height=4)):
             frustum = space.Frustum(IDENTITY, 1, (0, 0), **lens)
             self.assertTrue(frustum.sees(self.placed((-99, -99, -2), (99, -99, -2), (0, 99, -2)), 1, 3))
             self.assertFalse(frustum.sees(self.placed((-99, -99, -2), (99, -99, -2), (0, 99, -2)), 2.5, 3))
             self.assertFalse(frustum.sees(self.placed((-99, -99, 2), (99, -99, 2), (0, 99, 2)), 1, 3))
             self.assertFalse(frustum.sees(self.placed((2.5, -9, -2), (9, 0, -2), (2.5, 9, -2)), 1, 3))
-            # Beside the picture where the floor is near, in it where it is far.
+            # Outside the picture where the floor is near, inside it where it is far.
             floor = self.placed((-9, -1.5, 1), (9, -1.5, 1), (0, -1.5, -99))
             self.assertEqual((frustum.sees(floor, 0, 2.9), frustum.sees(floor, 0, 3.1)),
                              (False, True) if "half_angle" in lens else (True, True))
@@ -238,7 +240,7 @@ class Space(unittest.TestCase):
 
 
 class Pictures(unittest.TestCase):
-    """A scene written by the add-on's code, rendered, and read by it."""
+    """A scene written by the add-on's code, rendered, and read back by that code."""
 
     @classmethod
     def setUpClass(cls):
@@ -261,7 +263,8 @@ class Pictures(unittest.TestCase):
         lamps.write_lamp(box(**lamp, **spot), "Spot", at(0, 0, 2), file, lost)
         lamps.write_lamp(box(**{**lamp, "energy": 2.0}, type="SUN", angle=0.0), "Sun", at(0, 0, 2), file, lost)
         lamps.write_lamp(box(**{**lamp, "energy": 0.0}, type="SUN", angle=0.0), "Off", at(0, 0, 2), file, lost)
-        # Straight down on to the floor, x from −2 to 2 and y from −1 to 1, before the shift: half a unit right, a tenth up.
+        # Straight down onto the floor, x from −2 to 2 and y from −1 to 1 before the shift: half a unit to the right, a
+        # tenth up.
         file.camera("Shot", at(0, 0, 0.5), 2, (0.25, 0.05), height=2)
         assert not lost.refused and not lost.mentioned
         cls.folder = tempfile.TemporaryDirectory()
@@ -281,7 +284,7 @@ class Pictures(unittest.TestCase):
         cls.folder.cleanup()
 
     def light(self, name):
-        """Returns what pixel (x, y) on the floor reflects of one light, by position."""
+        """Returns x, y and the red light that each pixel of the floor reflects of one light."""
         channels = self.picture.channels
         return channels["P.X"], -channels["P.Z"], channels[f"{name}.R"]
 
@@ -301,7 +304,8 @@ class Pictures(unittest.TestCase):
         self.assertAlmostEqual(float(y[10, 20]), 0.1 - 0.05, places=5)
 
     def test_lamps_are_as_bright_as_in_cycles(self):
-        """Far enough to be points: intensity times cosine over distance squared; areas with another cosine."""
+        """Lamps are far enough away to count as points: intensity times cosine over distance squared; areas have a
+        second cosine."""
         def area(x, y):
             d2 = x * x + y * y + 4
             return 25 * 4 / d2 / d2
@@ -318,9 +322,9 @@ class Pictures(unittest.TestCase):
         self.expect("Spot", spot)
 
     def test_a_lamp_without_shadow_has_none(self):
-        """The pixels under the board, which the camera is below, are lit."""
+        """The pixels under the board, which is above the camera, are lit."""
         x, _, _ = self.light("Key")
-        under = x > 2.05  # as seen from (0, 0, 2) the board begins over x = 2
+        under = x > 2.05  # as seen from (0, 0, 2), the board begins at x = 2 on the floor
         self.assertTrue(under.any())
         self.assertEqual(self.picture.channels["Key.V"][under].max(), 0)
         self.assertEqual(self.picture.channels["Point.V"].min(), 1)

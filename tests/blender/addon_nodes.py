@@ -12,7 +12,7 @@ import unittest
 import zlib
 
 ZIP = sys.argv[1]
-sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, ZIP)  # tests the code that users get
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
@@ -108,7 +108,8 @@ class Materials(unittest.TestCase):
         self.assertTrue(look(principled(Metallic=1.0))[1].mentioned)
 
     def test_what_changes_a_surface_is_mentioned(self):
-        """Bump on any shader; Principled's diffuse part, which is no Lambert surface before Blender 4, nor if it is rough in Blender 4."""
+        """Bump maps on any shader are mentioned, and Principled's diffuse part: it is no Lambert surface before Blender
+        4, nor in Blender 4 if it is rough."""
         def mentioned(shader):
             return " ".join(losses.sentences(look(shader)[1].mentioned))
         for shader in (principled(), node("BSDF_DIFFUSE", Color=(1, 1, 1, 1), Roughness=0.0, Normal=None),
@@ -134,7 +135,7 @@ CHEQUERS = image([[(1, 0.5, 0, 1), (0, 0, 0, 1)], [(0, 0, 0, 1), (1, 0.5, 0, 1)]
 
 
 def colored(source, name="Color"):
-    """A surface whose colour comes from a node."""
+    """Returns a surface whose colour comes from a node."""
     shader = node("BSDF_DIFFUSE", Color=(1, 1, 1, 1), Roughness=0.0)
     shader.inputs["Color"].link(source, name)
     return shader
@@ -178,7 +179,7 @@ class Colors(unittest.TestCase):
             self.assertEqual(found.color, (0.8, 0.8, 0.8))
 
     def test_groups_and_muted_nodes(self):
-        """A colour that comes out of a group, where it is the product of what went in and half."""
+        """The output of a group is the product of its input and one half."""
         half = node("MIX_RGB", Fac=1.0, Color1=None, Color2=(0.5, 0.5, 0.5, 1))
         half.blend_type, half.use_clamp = "MULTIPLY", False
         start, end = node("GROUP_INPUT"), node("GROUP_OUTPUT", Result=None)
@@ -197,7 +198,7 @@ class Colors(unittest.TestCase):
         self.assertEqual(look(colored(muted))[0].color, (0.3, 0.2, 0.1))
 
     def test_mapping(self):
-        """A quarter turn, twice as large, moved; and the same the other way."""
+        """A quarter turn, scaled by two and moved; and the inverse."""
         for kind, wanted in (("POINT", (0.1 - 2 * 0.5, 0.2 + 2 * 0.25)), ("TEXTURE", ((0.5 - 0.2) / 2, (0.1 - 0.25) / 2))):
             mapping = node("MAPPING", Vector=None, Location=(0.1, 0.2, 0), Rotation=(0, 0, math.pi / 2), Scale=(2, 2, 1))
             mapping.vector_type = kind
@@ -218,7 +219,8 @@ class Colors(unittest.TestCase):
 
 class Texels(unittest.TestCase):
     def test_between_texels(self):
-        """Linear interpolation gives the mean halfway between two texels, and beyond the last texel the last or (repeated) the first one; B-splines keep straight lines."""
+        """Linear interpolation gives the mean halfway between two texels; beyond the last texel it gives the last or
+        (repeated) the first one. B-splines keep straight lines."""
         values = numpy.linspace(0, 1, 8).reshape(1, 8, 1).repeat(3, axis=2)
         fine = texels.finer(values, "Linear", "EXTEND")
         self.assertEqual(fine.shape, (16, 128, 3))
@@ -245,7 +247,8 @@ class Texels(unittest.TestCase):
 
 
 class Skies(unittest.TestCase):
-    """Radiance of a world's nodes by direction, held against Cycles' own rule: u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) / pi from the top."""
+    """Radiance of a world's nodes by direction, compared with Cycles' rule: u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) /
+    pi from the top."""
 
     def world_of(self, turn=(0, 0, 0), scale=(1, 1, 1), kind="POINT", place=(0, 0, 0)):
         mapping = node("MAPPING", Vector=None, Location=place, Rotation=turn, Scale=scale)
@@ -263,7 +266,8 @@ class Skies(unittest.TestCase):
         return box(use_nodes=True, node_tree=box(get_output_node=lambda _: output))
 
     def looked_up(self, direction, world):
-        """Looks a direction up in the dome that is written: the node's +Y is up, -Z the middle column, +X to the right of it."""
+        """Returns the value of the written dome in a direction: the node's +Y is up, -Z is the middle column, +X is to
+        the right of it."""
         lights, seen = sky.skies_of(world)
         self.assertIs(lights, seen)
         self.assertEqual(lights.radiance, (2, 2, 2))
@@ -289,7 +293,7 @@ class Skies(unittest.TestCase):
             wanted = int(math.acos(z) / math.pi * 4) * 8 + int((0.5 - math.atan2(y, x) / (2 * math.pi)) * 8) % 8
             found = self.looked_up(direction, self.world_of(tuple(angles), tuple(2.5 * signs)))
             self.assertAlmostEqual(found * 32, wanted, places=4)
-            # A texture mapping is the inverse.
+            # A mapping of type TEXTURE is the inverse.
             x, y, z = direction
             wanted = int(math.acos(z) / math.pi * 4) * 8 + int((0.5 - math.atan2(y, x) / (2 * math.pi)) * 8) % 8
             world = self.world_of(tuple(angles), tuple(2.5 * signs), "TEXTURE")

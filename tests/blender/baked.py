@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the Bake button: the baked image of an object against a picture that shows the same points. Run inside Blender:
+"""Tests the Bake button: compares the baked image of an object with a picture of the same points. Run inside Blender:
 
     run.sh baked.py ADDON.zip PENUMBRA WORK
 """
@@ -22,7 +22,8 @@ COLOR = (0.5, 0.25, 0.75)
 
 
 def floor_seen_from_above():
-    """Builds a floor of 4 by 4 that fills the picture, with an upright UV map. The block is above the camera, which does not show it."""
+    """Builds a floor of 4 by 4 that fills the picture, with an upright UV map, and a block above the camera, which
+    therefore does not show it."""
     material = scenes.diffuse(COLOR, "Floor")
     data = scenes.quad("Floor", material, 2)
     for name, corners in (("Other", ((0, 0),) * 4), ("Map", ((0, 0), (1, 0), (1, 1), (0, 1)))):

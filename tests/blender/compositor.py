@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what Blender's compositor takes from a picture that the program wrote: layers of each light, depth, and objects cut out by
-Cryptomatte. Run inside Blender:
+"""Tests that Blender's compositor can use a picture written by the program: layers of each light, depth, and objects
+cut out by Cryptomatte. Run inside Blender:
 
     run.sh compositor.py ADDON.zip PENUMBRA WORK
 """
@@ -26,7 +26,7 @@ def out(name):
 class Compositor(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        """A picture of several view samples a pixel, of a scene that the add-on wrote."""
+        """Makes a picture, with several view samples for each pixel, of a scene written by the add-on."""
         inside.fresh(scenes.many_lamps)
         from penumbra import export, frames, losses
         writer = export.SceneWriter(bpy.context.evaluated_depsgraph_get(), losses.Losses(), False)
@@ -38,7 +38,7 @@ class Compositor(unittest.TestCase):
         cls.picture = inside.read(cls.file).channels
 
     def composite(self, node, prepare, socket, file=None):
-        """Returns the output of the node, whose image is the picture, at the compositor's end."""
+        """Returns the output of the node, whose image is the picture, after compositing."""
         bpy.ops.wm.read_factory_settings(use_empty=True)
         bpy.ops.preferences.addon_enable(module="penumbra")
         scene = bpy.context.scene
@@ -70,7 +70,7 @@ class Compositor(unittest.TestCase):
         return self.composite("CompositorNodeImage", prepare, socket, file)
 
     def coverage(self, layer, name):
-        """Coverage by the specification: of all ranks those whose number is the name's."""
+        """Returns the coverage by the specification: the sum over all ranks whose number is that of the name."""
         number = numpy.array([murmur3(name)], "<u4")
         exponent = int(number[0]) >> 23 & 255
         if exponent in (0, 255):
@@ -101,14 +101,14 @@ class Compositor(unittest.TestCase):
         self.assertGreater(len(numpy.unique(numbers)), 5)
 
     def test_dwaa_of_two_parts(self):
-        """Colours are in the first part, packed with loss; positions in the second, as they are."""
+        """Colours are in the first part, compressed with loss; positions are in the second part, unchanged."""
         numpy.testing.assert_allclose(self.image("Combined", out("dwaa.exr"))["R"], self.picture["R"], rtol=.05, atol=.02)
         numpy.testing.assert_array_equal(self.image("P", out("dwaa.exr"))["G"], self.picture["P.Y"])
         numpy.testing.assert_array_equal(self.image("triangle", out("dwaa.exr"))["R"], self.picture["triangle.X"])
 
 
 def murmur3(name):
-    """MurmurHash3_x86_32 (Appleby), seed 0."""
+    """Returns MurmurHash3_x86_32 (Appleby) with seed 0."""
     data, mask = name.encode(), 0xffffffff
     mixed = lambda k: (lambda m: ((m << 15 | m >> 17) & mask) * 0x1b873593 & mask)(k * 0xcc9e2d51 & mask)  # noqa: E731
     value = 0

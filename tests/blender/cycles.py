@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders small scenes (scenes.py) by the add-on and by Cycles' direct light, and compares. Run inside Blender:
+"""Renders small scenes (scenes.py) with the add-on and with Cycles' direct light, and compares them. Run inside
+Blender:
 
     run.sh cycles.py ADDON.zip PENUMBRA WORK [SCENE...]
 
 Cycles renders each scene twice, with different seeds: the difference is its noise. Prints a table, and exits 1 if any scene is off.
 
-The add-on's V divides pixels in three regions: all lights visible, none, and between. In lit and partly lit regions our sum over
-Cycles' sum is 1 within five standard errors and BIAS, and single pixels differ by no more than Cycles' own noise. In the umbra
-Cycles sees no light. Pixels whose neighbours show another surface are left out: at borders the two programs round differently
-which surface covers a pixel's centre.
+The add-on's V divides the pixels into three regions: all lights visible, none visible, and between. In lit and partly
+lit regions our sum over Cycles' sum is 1 within five standard errors and BIAS, and single pixels differ by no more than
+Cycles' own noise. In the umbra Cycles sees no light. Pixels whose neighbours show another surface are left out: at
+borders between surfaces the two programs may round to different surfaces at a pixel's centre.
 """
 
 import json
@@ -23,27 +24,28 @@ import scenes  # noqa: E402
 from inside import ARGUMENTS, OUT, channels, fresh  # noqa: E402
 
 SAMPLES = 256
-SCALE = int(os.environ.get("SCALE", "1"))  # factor of the pictures' sides, for people to look at
+SCALE = int(os.environ.get("SCALE", "1"))  # factor of the pictures' sides, for pictures that people look at
 STANDARD_ERRORS = 5.0
-# Bias of Cycles in the ratio of sums, due to its single-precision sampling of lights: measured where nothing is shaded,
-# at up to 65536 samples, 2e-4.
+# Bias of Cycles in the ratio of sums, due to its single-precision sampling of lights: 2e-4 where measured, on unshaded
+# pixels with up to 65536 samples.
 BIAS = 1e-3
-# Pixels beside an umbra's edge may see a last bit of light in Cycles, whose pixels are a hundredth wide and not points.
+# Pixels next to an umbra's edge may get a little light in Cycles, whose pixels are a hundredth wide and not points.
 EDGE = 1e-2
-# Scenes whose light is counted in light samples, here the largest number: it passes holes and panes, or comes from a world.
+# Scenes whose light is counted in light samples, here the largest number of them: it passes holes and panes, or comes
+# from a world.
 COUNTED = {"translucent", "cut_out", "world_color_counted", "world_and_lamp", "world_picture", "world_picture_turned",
            "world_picture_texture_mapping", "world_picture_mirrored", "world_and_translucent", "forest"}
-# Scenes with several view samples a pixel: means are compared at every pixel. Penumbra takes 64, evenly spread; 64 random
-# ones would have twice the noise of Cycles' 256.
+# Scenes with several view samples for each pixel: means are compared at every pixel. Penumbra takes 64, evenly spread;
+# 64 random ones would have twice the noise of Cycles' 256.
 LENSES = {"depth_of_field", "orthographic_depth_of_field", "motion_and_lens"}
-# Scenes in motion, at pixels' centres but for the last: 64 moments, evenly spread. Cycles exposes the first 254 of 256 parts of
-# its shutter (docs/against-cycles.md, In motion), so that its shutter time is set longer by the same factor.
+# Scenes in motion, at pixels' centres except for the last: 64 moments, evenly spread. Cycles exposes only the first 254
+# of 256 parts of its shutter (docs/against-cycles.md, In motion), so its shutter time is made longer by that factor.
 MOVING = {"motion_of_a_thing", "motion_of_the_camera", "motion_of_a_mesh", "motion_of_a_shining_thing", "motion_and_lens"}
 BLURRED = LENSES | MOVING
-# Further differences where Cycles means another shape: a point lamp of radius r at distance d is a disk to Cycles and a
-# ball here, which gives up to r² / d² more (spots' disks are in their cones); an icosphere of 1280 faces and its sphere
-# differ by 0.25 %; under the tube Cycles is 0.15 % below Lambert's closed form, which ours meets to 1e-6 (both at 509
-# pixels of the floor).
+# Further differences, where Cycles uses another shape: a point lamp of radius r at distance d is a disk in Cycles and a
+# ball here, which gives up to r² / d² more (disks of spots are in their cones); an icosphere of 1280 faces and its
+# sphere differ by 0.25 %; under the tube Cycles is 0.15 % below Lambert's closed form, which our result meets to 1e-6
+# (both at 509 pixels of the floor).
 MODEL = {"point": 0.1 ** 2 / 2.5 ** 2, "many_lamps": 0.05 ** 2 / 2 ** 2,
          "shadowless_lamp": 0.1 ** 2 / 2 ** 2, "emissive_sphere": 2.5e-3, "emissive_tube": 2e-3}
 
@@ -61,7 +63,7 @@ def by_cycles(name, scene, seed, path):
     if name in LENSES:
         cycles.pixel_filter_type, cycles.filter_width = "BOX", 1
     else:
-        cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01  # a box would be a whole pixel
+        cycles.pixel_filter_type, cycles.filter_width = "GAUSSIAN", 0.01  # a box would cover the whole pixel
     shutter = scene.render.motion_blur_shutter
     scene.render.motion_blur_shutter = shutter * 256 / 254
     try:
@@ -105,7 +107,7 @@ def regions(found, lights):
 
 
 def compare(name, found, first, second):
-    """Returns a row for each region of at least 20 pixels: figures, and whether they are well."""
+    """Returns a row for each region of at least 20 pixels: its figures, and whether they are within bounds."""
     lights = [key[2:-2] for key in found if key.startswith("V ")]
     ours, theirs = colors(found), (first + second) / 2
     usable, rows = inner(found), []

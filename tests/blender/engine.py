@@ -135,7 +135,7 @@ class Engine(unittest.TestCase):
         self.assertIn("'Shot' is panoramic", self.refusal(scene))
 
     def test_sizes_are_as_blender_rounds_them(self):
-        """At every percentage the program is asked for the size that Blender's own result has."""
+        """At every percentage the size passed to the program is that of Blender's own result."""
         from penumbra import serving
         asked, own = [], serving.run
 
@@ -154,7 +154,7 @@ class Engine(unittest.TestCase):
                     wanted = tuple(side * percentage // 100 for side in whole)
                     self.assertEqual(asked[-1], wanted, f"{whole} at {percentage} %")
             scene.render.resolution_x, scene.render.resolution_y = 1280, 720
-            for percentage in (35, 70):  # and Blender's own files are of this size
+            for percentage in (35, 70):  # Blender's own files also have this size
                 scene.render.resolution_percentage = percentage
                 bpy.ops.render.render(write_still=True)
                 self.assertEqual(tuple(bpy.data.images.load(out("size.bmp")).size), asked[-1])
@@ -230,10 +230,10 @@ class Engine(unittest.TestCase):
             numpy.testing.assert_array_equal(found[f"Combined.{letter}"][~nothing], clear[f"Combined.{letter}"][~nothing])
 
     def test_a_film_that_is_not_transparent_shows_the_worlds_picture(self):
-        """The background is that of Cycles, in whichever direction the camera looks."""
+        """The background equals that of Cycles, whatever direction the camera looks in."""
         for turn, target in (((0, 0, 0), (0, 0, 0)), ((0.4, -0.3, 2.1), (3, 4, 9)), ((0, 0, 0.7), (-9, 0, 2))):
             def build():
-                scenes.translucent()  # the pane alone remains, black, and covers half of the picture
+                scenes.translucent()  # only the pane remains, black, and covers half of the picture
                 for name in ("Floor", "Block", "Key"):
                     bpy.data.objects.remove(bpy.data.objects[name])
                 pane = bpy.data.objects["Pane"]
@@ -254,7 +254,7 @@ class Engine(unittest.TestCase):
             for letter in "RGB":
                 off = numpy.abs(ours[f"Combined.{letter}"] - theirs[f"Combined.{letter}"])
                 self.assertGreater(float(numpy.ptp(theirs[f"Combined.{letter}"])), 0.05)
-                self.assertLess(float(numpy.mean(off > 1e-3)), 0.01, letter)  # except pixels on a border between texels
+                self.assertLess(float(numpy.mean(off > 1e-3)), 0.01, letter)  # pixels on a border between texels
 
     def test_worlds_that_are_not_evaluated_are_refused_by_name(self):
         def refused(change):
@@ -318,7 +318,7 @@ class Engine(unittest.TestCase):
         numpy.testing.assert_allclose(covered, smooth["Combined.A"], atol=1e-6)
         self.assertGreater(len(numpy.unique(smooth["CryptoObject00.G"])), 3)
         scene.penumbra.pixel_filter = "BLACKMAN_HARRIS"
-        scene.penumbra.pixel_samples = "16"  # four are all at the same distance
+        scene.penumbra.pixel_samples = "16"  # four would all have the same distance from the centre
         filtered = inside.channels(scene, out("filtered.exr"))
         self.assertFalse(numpy.array_equal(filtered["Combined.A"], smooth["Combined.A"]))
 

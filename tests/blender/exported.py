@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders the small scenes (scenes.py) from the files that Blender's own glTF exporter makes of them, and compares with Cycles'
+"""Renders the small scenes (scenes.py) from files made by Blender's own glTF exporter, and compares them with Cycles'
 direct light as cycles.py does. Run inside Blender:
 
     run.sh exported.py ADDON.zip PENUMBRA WORK [SCENE...]
 
-As an artist has to who exports: an emissive plane stands for each area lamp, lamps say their size by a custom property, and
-surfaces are Principled BSDF, which Cycles gets as the diffuse surface that they are here.
+The scenes are prepared as an artist has to do for the export: an emissive plane replaces each area lamp, lamps have
+their size in a custom property, and surfaces are Principled BSDF. Cycles renders these as the diffuse surfaces that
+they are to Penumbra.
 """
 
 import importlib.util
@@ -21,20 +22,23 @@ import bpy  # noqa: E402
 import scenes  # noqa: E402
 from inside import ARGUMENTS, OUT, PENUMBRA, fresh, read  # noqa: E402
 
-# This name is that of Cycles' own add-on, so the module is loaded under another.
+# cycles is also the name of Cycles' own add-on, so the module is loaded under another name.
 _spec = importlib.util.spec_from_file_location("beside_cycles", os.path.join(os.path.dirname(os.path.abspath(__file__)), "cycles.py"))
 cycles = importlib.util.module_from_spec(_spec)
 _spec.loader.exec_module(cycles)
 
-# Scenes that the file cannot hold: lens shift, shadow visibility, worlds, what particles scatter, and mixed shaders.
+# Scenes that the file cannot hold: lens shift, shadow visibility, worlds, objects scattered by particles, and mixed
+# shaders.
 LOST = {name for name in scenes.SCENES if name.startswith("world_")} | {"camera_shift", "orthographic_shift", "depth_of_field", "orthographic_depth_of_field", "shadowless_lamp", "shadowless_object", "translucent", "cut_out", "hidden"}
-# The file has what faces a sun, which is what it gets here; in Cycles a sun of half angle a gives that less about a² / 4.
+# The file has the irradiance of a surface that faces the sun, and Penumbra gives it that; in Cycles a sun of half angle
+# a gives about a² / 4 less.
 cycles.MODEL = {**cycles.MODEL, "sun": radians(4) ** 2 / 4}
-SIDES = 64  # of what stands for a round lamp
+SIDES = 64  # of the polygon that replaces a round lamp
 
 
 def plane_for(name, data, location, rotation, scale):
-    """An emissive mesh of an area lamp's shape and radiance, its front along −Z. Like all emission it shines to both sides."""
+    """Returns an emissive mesh of an area lamp's shape and radiance, with its front along −Z. Like all emission it
+    shines to both sides."""
     width, depth = data.size, data.size_y if data.shape in ("RECTANGLE", "ELLIPSE") else data.size
     area = width * depth * scale[0] * scale[1]
     if data.shape in ("DISK", "ELLIPSE"):
@@ -64,7 +68,7 @@ lamp, scenes.lamp = scenes.lamp, exportable_lamp
 
 @scenes.scene
 def cards():
-    """Principled surfaces with an image's holes, and one that dims."""
+    """Principled surfaces: one with holes from an image, one translucent."""
     scenes.add("Floor", scenes.quad("Floor", half=4))
     scenes.camera()
     image = bpy.data.images.new("Leaf", 16, 16, alpha=True)
@@ -89,7 +93,7 @@ def cards():
 
 
 def principled(material):
-    """Puts one in the place of the material's diffuse surface, which comes back."""
+    """Replaces the material's diffuse surface by a Principled BSDF, and returns the new node."""
     tree = material.node_tree
     old = next(node for node in tree.nodes if node.type == "BSDF_DIFFUSE")
     new = tree.nodes.new("ShaderNodeBsdfPrincipled")
@@ -115,7 +119,7 @@ def make_exportable():
 
 
 def make_diffuse():
-    """Makes surfaces what a Principled surface is to Penumbra: diffuse, where its image or alpha says that it is there."""
+    """Makes Principled surfaces what they are to Penumbra: diffuse, and present where their image or alpha says so."""
     for material in bpy.data.materials:
         tree = material.node_tree
         old = next((node for node in tree.nodes if node.type == "BSDF_PRINCIPLED"), None) if material.use_nodes else None

@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the add-on as farms run it: `blender -b --addons penumbra FILE.blend … -f 1`, without saved preferences. A frame that succeeds
-gives a file and exit code 0, one that fails gives no file and another code; a killed Blender leaves no files.
+"""Tests the add-on as render farms run it: `blender -b --addons penumbra FILE.blend … -f 1`, without saved preferences.
+A frame that succeeds gives a file and exit code 0, one that fails gives no file and another code; a killed Blender
+leaves no files.
 
     farm.py ADDON.zip PENUMBRA WORK
 """
@@ -87,7 +88,7 @@ class Farm(unittest.TestCase):
         self.assertEqual(os.listdir(path("tmp")), [])
 
     def test_frames_that_are_not_rendered_are_named(self):
-        """Blender saves no frame after one that failed of several on one command line."""
+        """If one of several frames on a command line fails, Blender saves none after it."""
         run, written = self.frames("broken", "-f", "1,2,3")
         self.assertEqual((run.returncode, written), (1, [1]), run.stdout)
         self.assertIn("Frame 3: not rendered, because frame 2 failed", run.stdout)

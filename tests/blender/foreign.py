@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Renders small scenes (scenes.py) from FBX and COLLADA files that Blender's own exporters make of them, and compares with Cycles'
-direct light as exported.py does. Run inside Blender:
+"""Renders small scenes (scenes.py) from FBX and COLLADA files made by Blender's own exporters, and compares them with
+Cycles' direct light as exported.py does. Run inside Blender:
 
     run.sh foreign.py ADDON.zip PENUMBRA WORK [SCENE...]
 
-These files hold no size of a lamp, so options of the program give it. COLLADA holds no strength of emission and no cone whose light
-falls off toward its rim.
+These files have no sizes of lamps, so options of the program set them. COLLADA has no strength of emission, and no cone
+whose light falls off toward its rim.
 """
 
 import os
@@ -28,7 +28,7 @@ COLLADA = ("point", "sun", "turned_below_a_parent")
 
 @scenes.scene
 def turned_below_a_parent():
-    """A turned block below an evenly scaled, turned parent; more lamps than cameras, white and coloured."""
+    """A turned block below a turned parent with uniform scale; more lamps than cameras, white and coloured."""
     block = scenes.stage()
     parent = scenes.add("Parent", None, (0, 0, 0.2), (0, 20, 30), scale=(1.3, 1.3, 1.3))
     block.parent = parent
@@ -37,7 +37,7 @@ def turned_below_a_parent():
 
 
 def make_exportable():
-    """Moves emission into Principled surfaces, the only emission that the exporters write."""
+    """Moves emission into Principled surfaces, as the exporters write no other emission."""
     exported.make_exportable()
     for material in bpy.data.materials:
         tree = material.node_tree

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared by scripts that run inside Blender: the add-on, installed from its zip, and an empty scene."""
+"""Code shared by scripts that run inside Blender: installs the add-on from its zip, and makes an empty scene."""
 
 import os
 import sys
@@ -12,7 +12,7 @@ WIDTH, HEIGHT = 96, 72
 
 
 def fresh(build):
-    """The scene that `build` makes, to be rendered by Penumbra."""
+    """Returns the scene that `build` makes, to be rendered by Penumbra."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.preferences.addon_enable(module="cycles")
     bpy.ops.preferences.addon_enable(module="penumbra")
@@ -35,14 +35,14 @@ def read(path):
 
 
 def channels(scene, path):
-    """Renders; the picture's channels by what follows the view layer's name."""
+    """Renders, and returns the picture's channels by the part of their names after the view layer's name."""
     scene.render.filepath = path
     bpy.ops.render.render(write_still=True)
     return {name.split(".", 1)[1]: values for name, values in read(path).channels.items() if "." in name}
 
 
 def run_tests(*cases):
-    """All of them; Blender ends with 1 if one fails."""
+    """Runs all tests; Blender ends with 1 if one fails."""
     load = unittest.defaultTestLoader.loadTestsFromTestCase
     result = unittest.TextTestRunner(verbosity=2).run(unittest.TestSuite(load(case) for case in cases))
     print(f"compare: {result.testsRun} tests, {len(result.failures) + len(result.errors)} failed", flush=True)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that the child of a 3D view ends when its Blender is killed in the middle of pictures, and that its folder goes, too.
+"""Tests that if Blender is killed while a 3D view makes pictures, the view's child process ends and its folder is
+deleted.
 
     killed.py ADDON.zip PENUMBRA WORK
 """
@@ -16,11 +17,11 @@ import unittest
 
 ZIP, PENUMBRA, WORK = sys.argv[1:4]
 RUN = os.path.join(os.path.dirname(os.path.abspath(__file__)), "run.sh")
-SECONDS = 10  # for ends that take milliseconds on an idle machine
+SECONDS = 10  # a wait for ends that take milliseconds on an idle machine
 
 
 def lives(number):
-    """Returns whether a process runs; one that has ended, and for which nobody has waited, does not."""
+    """Returns whether a process runs; a process that has ended but was not yet waited for does not."""
     try:
         with open(f"/proc/{number}/stat") as file:
             return file.read().rpartition(")")[2].split()[0] not in "ZX"
@@ -39,10 +40,10 @@ def eventually(condition, seconds):
 
 class KilledBlender(unittest.TestCase):
     def killed_by(self, number):
-        """Kills a Blender whose view turns; nothing that worked for the view is left."""
+        """Kills a Blender whose view turns; no process or folder of the view may remain."""
         work = os.path.join(WORK, str(int(number)))
         said = os.path.join(work, "out", "processes.json")
-        shutil.rmtree(work, ignore_errors=True)  # with what an earlier run said
+        shutil.rmtree(work, ignore_errors=True)  # removes the output of an earlier run
         os.makedirs(WORK, exist_ok=True)
         runs = subprocess.Popen([RUN, "turning.py", ZIP, PENUMBRA, work], env={**os.environ, "WINDOW": "1"}, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.DEVNULL, start_new_session=True)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests motion blur: a picture is the mean of the pictures of its moments, each of which Blender evaluates by itself. Run inside
-Blender:
+"""Tests motion blur: a picture is the mean of the pictures of its moments, each of which Blender evaluates separately.
+Run inside Blender:
 
     run.sh motion.py ADDON.zip PENUMBRA WORK
 """
@@ -31,7 +31,7 @@ def lit_stage():
 
 
 class Spy:
-    """The program's command lines, and the sizes of its files, while pictures are made."""
+    """Records the program's command lines, and the sizes of its files, while pictures are made."""
 
     def __enter__(self):
         from penumbra import serving
@@ -71,7 +71,7 @@ class Motion(unittest.TestCase):
         return [opens + SHUTTER * (i + 0.5) / COUNT for i in range(COUNT)]
 
     def mean(self, scene, times):
-        """Returns the mean of the pictures at these times, and the frame's own."""
+        """Returns the mean of the pictures at these times, and the picture of the frame itself."""
         scene.render.use_motion_blur, sums, pictures = False, {}, []
         for time in [*times, FRAME]:
             scene.frame_set(int(time // 1), subframe=time % 1)
@@ -83,7 +83,7 @@ class Motion(unittest.TestCase):
         return sums, pictures[-1]
 
     def check(self, scene, position="CENTER", written=COUNT):
-        """Holds a picture against the mean of its moments. `written`: number of different files of moments."""
+        """Compares a picture with the mean of its moments. `written`: number of different files of moments."""
         scene.cycles.motion_blur_position = position
         with Spy() as spy:
             found = inside.channels(scene, out("blur.exr"))
@@ -94,7 +94,8 @@ class Motion(unittest.TestCase):
         moved = 0
         for name, values in found.items():
             if name.startswith(("Combined", "V", "Light")):
-                # Origins of the moments' floats differ, where each is rendered alone: a pixel at an edge may see another surface.
+                # A moment that is rendered separately has another float origin: a pixel at an edge may see another
+                # surface.
                 off = numpy.abs(values - mean[name]) > 1e-4 * max(float(mean[name].max()), 1)
                 self.assertLess(int(off.sum()), 4, name)
                 moved += int((numpy.abs(own[name] - mean[name]) > 1e-2).sum())
@@ -124,7 +125,7 @@ class Motion(unittest.TestCase):
         self.check(self.build(lambda: keyed(bpy.data.cameras["Shot"], "lens", 30, 60)))
 
     def test_the_camera_is_that_of_the_frame(self):
-        """A marker that binds another camera to the next frame changes nothing while the shutter is open."""
+        """A marker that switches to another camera at the next frame changes nothing while the shutter is open."""
         def cut():
             keyed(bpy.data.objects["Block"], "location", (-1, 0, 1), (1, 0, 1))
             first = bpy.context.scene.camera
@@ -147,7 +148,7 @@ class Motion(unittest.TestCase):
             keyed(tall, "value", 0, 1)
             bpy.ops.mesh.primitive_uv_sphere_add(segments=64, ring_count=32, radius=0.5, location=(-1.5, 1, 0.5))
         sizes = self.check(self.build(key)).sizes[0]
-        self.assertGreater(sizes["still.bin"], 50_000)  # the sphere, which is written once
+        self.assertGreater(sizes["still.bin"], 50_000)  # the file has the sphere, which is written only once
         self.assertLess(sizes["moment-1.glb"], 6000)
 
         def bone():
@@ -164,7 +165,7 @@ class Motion(unittest.TestCase):
         self.check(self.build(bone))
 
     def test_drivers_and_handlers_in_python(self):
-        """Blender runs them on other threads while the add-on waits for a moment to be evaluated."""
+        """Blender runs drivers and handlers on other threads while the add-on waits for a moment to be evaluated."""
         bpy.context.preferences.filepaths.use_scripts_auto_execute = True
 
         def drive():
@@ -190,7 +191,7 @@ class Motion(unittest.TestCase):
             for frame, count in ((FRAME - 1, 1), (FRAME, 2), (FRAME + 1, 3)):
                 modifier.count = count
                 modifier.keyframe_insert("count", frame=frame)
-        self.check(self.build(grow), written=2)  # before the frame, and the frame's own
+        self.check(self.build(grow), written=2)  # the mesh before the frame, and that of the frame
 
     def test_materials_and_worlds_that_change(self):
         def glow():
@@ -220,10 +221,10 @@ class Motion(unittest.TestCase):
                 empty.instance_type, empty.instance_collection = "COLLECTION", source
             keyed(bpy.data.objects["Copy1"], "location", (0, -2, 0), (0, -1, 0.5))
         spy = self.check(self.build(spread))
-        self.assertLess(spy.sizes[0]["moment-1.glb"], 6000)  # nodes alone
+        self.assertLess(spy.sizes[0]["moment-1.glb"], 6000)  # the file has only nodes
 
     def test_what_is_still_costs_nothing(self):
-        """Nothing is keyed; keys that hold still; a world."""
+        """Nothing is keyed; keys that do not change anything; a world."""
         def held():
             keyed(bpy.data.objects["Block"], "location", (0.2, 0, 1), (0.2, 0, 1))
         for add in (lambda: None, held, scenes.pictured_world):
@@ -239,7 +240,8 @@ class Motion(unittest.TestCase):
                 numpy.testing.assert_array_equal(found[name], values, name)
 
     def test_mattes_and_pixel_samples(self):
-        """Shares of a matte sum to alpha; view samples of a pixel, and a lens, are those of every moment."""
+        """Shares of a matte sum to alpha; the view samples of a pixel, and those of a lens, are spread over all
+        moments."""
         scene = self.build(lambda: keyed(bpy.data.objects["Block"], "location", (-1, 0, 1), (1, 0, 1)))
         scene.view_layers[0].use_pass_cryptomatte_object = True
         for samples, field in (("1", False), ("4", False), ("4", True)):
@@ -303,7 +305,7 @@ class Motion(unittest.TestCase):
         self.assertEqual((scene.frame_current, scene.frame_subframe), (FRAME, 0))
 
     def test_what_is_lost_at_a_moment_is_said_once(self):
-        """A lamp that runs into the floor while the shutter is open."""
+        """A lamp moves into the floor while the shutter is open."""
         def sink():
             scenes.lamp("POINT", (-2, -1, 1), name="Bulb", energy=100, shadow_soft_size=0.1)
             keyed(bpy.data.objects["Bulb"], "location", (-2, -1, 1), (-2, -1, 0.05), frames=(FRAME, FRAME + 0.5))

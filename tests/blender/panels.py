@@ -70,7 +70,7 @@ def panels_of(tab):
 
 
 def shown(tab, thing=None):
-    """Returns what the add-on's panels of a tab show, those whose poll() accepts the context."""
+    """Returns what the add-on's panels of a tab show, for the panels whose poll() accepts the context."""
     context, layout = context_of(tab, thing), Layout()
     for panel in panels_of(tab):
         if panel.__module__.startswith("penumbra") and panel.poll(context):
@@ -121,7 +121,7 @@ class Panels(unittest.TestCase):
                               "DATA_PT_uv_texture", "OBJECT_PT_custom_props", "RENDER_PT_format", "RENDER_PT_output",
                               "RENDER_PT_color_management", "VIEWLAYER_PT_layer", "WORLD_PT_context_world",
                               "PARTICLE_PT_render"}, names)
-        # Has no second panel for the same settings, and none for what Penumbra does not render.
+        # The tab has no second panel for the same settings, and none for features that Penumbra does not render.
         self.assertFalse({"DATA_PT_light", "DATA_PT_EEVEE_light", "EEVEE_MATERIAL_PT_surface", "RENDER_PT_eevee_bloom",
                           "RENDER_PT_freestyle", "RENDER_PT_stereoscopy", "VIEWLAYER_PT_layer_passes"} & names)
 

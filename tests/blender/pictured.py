@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes docs/images/view/blender.png: Blender's window while a 3D view in Rendered shading shows Penumbra's picture. Run inside
-Blender, and copy WORK/out/blender.png:
+"""Makes docs/images/view/blender.png: Blender's window while a 3D view in Rendered shading shows Penumbra's picture.
+Run inside Blender, then copy WORK/out/blender.png:
 
     WINDOW=1440x810 run.sh pictured.py ADDON.zip PENUMBRA WORK
 """
@@ -19,7 +19,7 @@ from window import final, run, view_3d  # noqa: E402
 
 
 def room():
-    """Suzanne, a ring and a pillar in a corner, under a large lamp and a small warm one."""
+    """Suzanne, a ring and a pillar in a corner of a room, under a large lamp and a small warm one."""
     wall = scenes.diffuse((0.75, 0.72, 0.68), "Wall")
     scenes.add("Floor", scenes.quad("Floor", wall, 4))
     scenes.add("Back", scenes.quad("Back", wall, 4), (-3, 0, 2), (0, 90, 0))

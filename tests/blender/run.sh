@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# run.sh SCRIPT ADDON.zip PENUMBRA WORK [ARGUMENT…]: a script of this folder in a Blender that has no settings but its own.
-# Prints what the script prints after "compare: "; the rest is in WORK/log. WINDOW=1 in the environment: with a window of
-# 900 × 700 pixels, WINDOW=1440x810: of as many, on a screen of its own (Xvfb) that Mesa's processor drivers draw.
+# run.sh SCRIPT ADDON.zip PENUMBRA WORK [ARGUMENT…]: runs a script of this folder in a Blender with default settings.
+# Prints what the script prints after "compare: "; the rest is in WORK/log. With WINDOW=1 in the environment Blender has
+# a window of 900 × 700 pixels, with WINDOW=1440x810 one of that size, on a separate screen (Xvfb) that Mesa's processor
+# drivers draw.
 set -euo pipefail
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 script=$1 addon=$2 program=$3 work=$4

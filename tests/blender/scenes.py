@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Small scenes, made by script: what an artist sets up in Blender, one thing a scene. Run inside Blender.
+"""Small scenes made by script: each shows one feature that an artist sets up in Blender. Run inside Blender.
 
-Each function builds its scene from nothing; `SCENES` has them by name.
+Each function builds its scene from nothing; `SCENES` has the functions by name.
 """
 
 from math import pi, radians
@@ -135,7 +135,7 @@ def spot():
 
 @scene
 def spot_rim():
-    """A hard cone of a large lamp, each point of which has a cone of its own."""
+    """A spot with a hard cone and a large lamp, each point of which has its own cone."""
     add("Floor", quad("Floor", half=4))
     camera()
     lamp("SPOT", (1, -1, 5), (12, 10, 0), energy=2000, shadow_soft_size=0.25, spot_size=radians(35), spot_blend=0.15)
@@ -143,7 +143,7 @@ def spot_rim():
 
 @scene
 def spot_wide():
-    """Nearly half of all directions, beyond which nothing is lit."""
+    """A spot that lights nearly half of all directions, and nothing beyond its cone."""
     stage()
     lamp("SPOT", (1, -1, 2.5), (40, 30, 0), energy=1000, shadow_soft_size=0.05, spot_size=radians(175), spot_blend=0.3)
 
@@ -156,7 +156,7 @@ def emissive_plane():
 
 @scene
 def emissive_tube():
-    """Closed, of 12 flat sides."""
+    """A closed emissive tube with 12 flat sides."""
     stage()
     bpy.ops.mesh.primitive_cylinder_add(vertices=12, radius=0.1, depth=2, location=(0, -0.5, 2.5), rotation=(0, pi / 2, 0.4))
     bpy.context.object.name = "Tube"
@@ -173,7 +173,7 @@ def emissive_sphere():
 
 @scene
 def camera_shift():
-    """Shifts of a portrait, which are counted in its longer side."""
+    """Shifts of the lens in a portrait picture, which are counted in its longer side."""
     bpy.context.scene.render.resolution_x, bpy.context.scene.render.resolution_y = 72, 112
     stage(shift_x=0.13, shift_y=-0.071)
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
@@ -187,7 +187,7 @@ def orthographic_shift():
 
 @scene
 def depth_of_field():
-    """Sharp at an object that is before the block; the floor runs through the focus."""
+    """Sharp at an object in front of the block; the floor passes through the plane of focus."""
     stage()
     focus = add("Focus", None, (0, -2, 0.5))
     field = bpy.data.cameras["Shot"].dof
@@ -204,7 +204,7 @@ def orthographic_depth_of_field():
 
 
 def keyed(owner, path, *values, frames=(1, 8)):
-    """Keys a property at these frames, linearly."""
+    """Keys a property at these frames, with linear interpolation."""
     for frame, value in zip(frames, values):
         setattr(owner, path, value)
         owner.keyframe_insert(path, frame=frame)
@@ -214,7 +214,7 @@ def keyed(owner, path, *values, frames=(1, 8)):
 
 
 def in_motion():
-    """The stage under its lamp, in frame 4, at which the shutter opens for one frame."""
+    """The stage under its lamp, at frame 4, when the shutter opens for one frame."""
     block = stage()
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
     scene = bpy.context.scene
@@ -237,7 +237,7 @@ def motion_of_the_camera():
 
 @scene
 def motion_of_a_mesh():
-    """A shape key."""
+    """A mesh that a shape key deforms."""
     block = in_motion()
     block.shape_key_add(name="Basis")
     tall = block.shape_key_add(name="Tall")
@@ -248,7 +248,7 @@ def motion_of_a_mesh():
 
 @scene
 def motion_of_a_shining_thing():
-    """A panel that lights and moves; a thing that moves, too."""
+    """An emissive panel that moves, and another object that moves, too."""
     keyed(in_motion(), "location", (-0.5, 0, 1), (1, 0.5, 1.2))
     bpy.data.objects.remove(bpy.data.objects["Key"])
     keyed(add("Panel", quad("Panel", emission((1, 0.6, 0.3), 8)), (0, 0, 4), (0, 0, 0), (0.5, 0.5, 1)), "location",
@@ -264,7 +264,7 @@ def motion_and_lens():
 
 @scene
 def sensor_fit():
-    """The lens by the sensor's height, half the pixels, and a camera that is scaled."""
+    """A lens fitted to the sensor's height, a resolution of 50 %, and a camera with a scale."""
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y, render.resolution_percentage = 240, 160, 50
     stage(sensor_fit="VERTICAL", sensor_height=20, lens=30)
@@ -274,7 +274,8 @@ def sensor_fit():
 
 @scene
 def hidden():
-    """Hidden in renders: an object, a lamp, a collection; in the viewport alone: the block's neighbour."""
+    """An object, a lamp and a collection are hidden in renders; the block's neighbour is hidden only in the
+    viewport."""
     stage()
     lamp("AREA", (1, -1, 4), (15, 15, 0), energy=300, shape="SQUARE", size=1.2)
     add("Hidden", cube("Hidden"), (-1.5, 0, 1)).hide_render = True
@@ -337,7 +338,8 @@ def translucent():
 
 @scene
 def cut_out():
-    """An image's alpha cuts a chequered pane, whose colours it gives, too. Nearest texels, as holes have them."""
+    """An image's alpha cuts holes in a chequered pane, and the image gives the pane's colours, too. Texels are not
+    interpolated, as holes have none."""
     stage()
     image = bpy.data.images.new("Chequers", 4, 4, alpha=True)
     image.pixels = [x for row in range(4) for column in range(4)
@@ -396,7 +398,7 @@ def vertex_colors():
 
 @scene
 def many_lamps():
-    """Five of different kinds and colours."""
+    """Five lamps of different kinds and colours."""
     stage()
     lamp("AREA", (1, -1, 4), (15, 15, 0), name="Area", energy=100, shape="SQUARE", size=1.2, color=(1, 0.5, 0.3))
     lamp("AREA", (-2, 1, 3), (-20, -30, 0), name="Disk", energy=60, shape="DISK", size=0.8, color=(0.3, 1, 0.4))
@@ -427,7 +429,7 @@ def animated():
 
 @scene
 def monkey():
-    """A mesh of some thousand triangles, flat shaded."""
+    """A flat-shaded mesh of several thousand triangles."""
     add("Floor", quad("Floor", half=4))
     camera()
     bpy.ops.mesh.primitive_monkey_add(size=1.6, location=(0, 0, 1), rotation=(-0.5, 0, 0.3))
@@ -438,7 +440,7 @@ def monkey():
 
 @scene
 def particles():
-    """Objects that a particle system scatters; the emitter itself is not shown."""
+    """Objects scattered by a particle system; the emitter itself is not shown."""
     add("Floor", quad("Floor", half=4))
     camera()
     crumb = add("Crumb", cube("Crumb", half=0.5), (0, 0, -5))
@@ -453,7 +455,7 @@ def particles():
 
 
 def scatter(thing, sower, turned=False):
-    """Geometry nodes that put an object on the corners of a mesh, each turned about Z by chance if wanted."""
+    """Makes geometry nodes that put an object on the corners of a mesh, each turned randomly about Z if wanted."""
     nodes = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
     nodes.inputs.new("NodeSocketGeometry", "Geometry"), nodes.outputs.new("NodeSocketGeometry", "Geometry")
     begin, end = nodes.nodes.new("NodeGroupInput"), nodes.nodes.new("NodeGroupOutput")
@@ -480,7 +482,7 @@ def scattered():
 
 
 def world(color=(1, 1, 1), strength=1.0):
-    """A world of a Background node, whose tree comes back with that node."""
+    """Makes a world with a Background node; returns its node tree and that node."""
     made = bpy.data.worlds.new("Sky")
     bpy.context.scene.world = made
     made.use_nodes = True
@@ -490,7 +492,7 @@ def world(color=(1, 1, 1), strength=1.0):
 
 
 def environment(width=32):
-    """A picture of all around: floats, with a bright patch, and different wherever one looks."""
+    """Returns a float picture of the surroundings, with a bright patch, and different in every direction."""
     height = width // 2
     image = bpy.data.images.new("Around", width, height, float_buffer=True)
     x, y = numpy.meshgrid((numpy.arange(width) + 0.5) / width, (numpy.arange(height) + 0.5) / height)
@@ -519,7 +521,7 @@ def pictured_world(turn=(0, 0, 0), scale=(1, 1, 1), kind="POINT", **values):
 
 @scene
 def world_color():
-    """One radiance all around, its light in closed form."""
+    """A world of constant radiance, lit in closed form."""
     stage()
     world((0.3, 0.5, 0.9), 1.5)
     bpy.context.scene.penumbra.world = "EXACT"
@@ -545,7 +547,7 @@ def world_picture():
 
 @scene
 def world_picture_exact():
-    """A picture all around, constant in each of its texels, its light in closed form."""
+    """A world with a picture that is constant in each of its texels, lit in closed form."""
     stage()
     pictured_world((0.4, -0.3, 2.1), strength=2, interpolation="Closest")
     bpy.context.scene.penumbra.world = "EXACT"
@@ -571,7 +573,7 @@ def world_picture_mirrored():
 
 @scene
 def world_camera_apart():
-    """A world whose light is not what the camera sees."""
+    """A world whose light differs from what the camera sees."""
     stage()
     tree, background = world((0.9, 0.7, 0.5))
     seen, mix, path = (tree.nodes.new(f"ShaderNode{name}") for name in ("Background", "MixShader", "LightPath"))
@@ -584,7 +586,7 @@ def world_camera_apart():
 
 @scene
 def world_and_translucent():
-    """A pane before the sky and the floor."""
+    """A pane in front of the sky and the floor."""
     translucent()
     world((0.3, 0.5, 0.9), 1.5)
 
@@ -613,7 +615,8 @@ def tree(leaves=750):
 
 @scene
 def forest():
-    """A glade, and around it some 450 trees of 1512 triangles, more than are copied without need, under a sun and the sky."""
+    """A glade, and around it about 450 trees of 1512 triangles under a sun and the sky: too many to be copied without
+    need."""
     add("Floor", quad("Floor", diffuse((0.5, 0.5, 0.45)), half=24))
     camera((2, -17, 9), (0, -7, 0))
     random = numpy.random.default_rng(5)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""`penumbra serve` as the add-on's own client meets it, without Blender: what is shown in the end is what `render` makes of
-the whole scene, byte for byte; what is refused; how it ends.
+"""Tests `penumbra serve` with the add-on's own client, without Blender: the final picture is the same, byte for byte,
+as that of `render` for the whole scene; refusals; how it ends.
 
     serve.py ADDON.zip PENUMBRA
 """
@@ -18,7 +18,7 @@ import time
 import unittest
 
 ZIP, PENUMBRA = sys.argv[1:3]
-sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, ZIP)  # tests the code that users get
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import numpy  # noqa: E402
@@ -49,7 +49,7 @@ class Serve(unittest.TestCase):
         self.child.send({"type": "show", "stamp": self.stamp, "visibility": True, **message})
 
     def final(self, stamps=None):
-        """The final picture of all that was sent; `stamps` gets those of what came before."""
+        """Returns the final picture of everything sent so far; `stamps` gets the stamps of the pictures before it."""
         end = time.monotonic() + 60
         while time.monotonic() < end:
             picture = self.child.take_picture()
@@ -101,12 +101,12 @@ class Serve(unittest.TestCase):
         picture = self.final(stamps)
         self.assertEqual(stamps, sorted(stamps))
         self.expect_whole(picture, viewpoint)
-        # A lamp moves: it alone is sent.
+        # A lamp moves: only the lamp is sent.
         self.scene.things["Key"] = self.scene.area(at(-1, -2, 3.5, 1.1, 0.7))
         self.scene.put(self.child, "Key")
         self.show()
         self.expect_whole(self.final(), viewpoint)
-        # A mesh is edited, an emitting one moves, a lamp goes.
+        # A mesh is edited, an emissive mesh moves, a lamp is removed.
         self.scene.things["Block"] = self.scene.block(at(0.5, 0.3, 1, 1, 0.9), 1.7)
         self.scene.put(self.child, "Block")
         self.show()
@@ -117,7 +117,7 @@ class Serve(unittest.TestCase):
         self.child.send({"type": "remove", "things": ["Bulb", "nothing"]})
         self.show(lightSamples=64)
         self.expect_whole(self.final(), viewpoint, "--light-samples", "64")
-        # Another order, other lights' shadows, and another kind of lens.
+        # Another order of objects, other shadow settings of lights, and another kind of lens.
         self.scene.things = {name: self.scene.things[name] for name in ("Panel", "Fill", "Block", "Key", "Floor")}
         self.order()
         viewpoint = seen_from(-0.4, ortho=True)
@@ -141,14 +141,14 @@ class Serve(unittest.TestCase):
         self.assertIn("none", said["text"])
 
     def error(self, refused):
-        """The text of the next error, which refuses a message of this type."""
+        """Returns the text of the next error, which must refuse a message of this type."""
         while (said := self.heard())["type"] != "say" or said["level"] != "error":
             pass
         self.assertEqual(said["refused"], refused)
         return said["text"]
 
     def test_a_picture_is_read_from_the_folder_alone(self):
-        """The picture is not read from the folder where the program was started."""
+        """The picture must not be read from the folder where the program was started."""
         self.scene.add_sky(self.folder.name, 0.4)
         self.scene.folder = ""
         self.child.kill()
@@ -163,7 +163,7 @@ class Serve(unittest.TestCase):
         self.assertIn("world.exr", self.error("put"))
 
     def test_pictures_stay_with_their_meshes(self):
-        """The lamp comes first, and from the file of one mesh; then it is replaced alone."""
+        """The lamp comes first, from the same file as one of the meshes; then only the lamp is replaced."""
         self.scene.things = {"Key": self.scene.things["Key"], "Left": self.scene.tile("Left", at(-1.2, 0, 0), (255, 40, 80, 120)),
                              "Right": self.scene.tile("Right", at(1.2, 0, 0), (10, 200, 90, 160))}
         viewpoint = seen_from(0.2)
@@ -178,7 +178,8 @@ class Serve(unittest.TestCase):
         self.expect_whole(self.final(), viewpoint)
 
     def test_a_thing_of_which_nothing_is_left(self):
-        """Wholly transparent meshes are left out: at the start, and when they were there before. Names of things are many."""
+        """Wholly transparent meshes are left out: at the start, and also if they were visible before. A message may name
+        very many objects."""
         viewpoint = seen_from(0.3)
         shown, gone = self.scene.things["Block"], self.scene.block(at(0.2, 0, 1, 1, 0.4), alpha=0.0)
         self.scene.things["Block"] = gone
@@ -247,7 +248,7 @@ class Serve(unittest.TestCase):
         self.assertEqual(self.final().rgba.tobytes(), before.rgba.tobytes())
 
     def ends(self, data, code, seconds=20):
-        """Expects that the program ends with this code when this has been written, and nothing after it."""
+        """Expects that after this input the program ends with this code, and writes nothing more."""
         process = subprocess.Popen([PENUMBRA, "serve"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         out, error = process.communicate(data, seconds)
         self.assertEqual(process.returncode, code, error)
@@ -263,7 +264,7 @@ class Serve(unittest.TestCase):
         viewpoint = seen_from(0)
         self.scene.put(self.child, *self.scene.things)
         for _ in range(5):
-            self.show(camera=viewpoint.camera(), size=(3000, 2000))  # of which nobody will read a picture
+            self.show(camera=viewpoint.camera(), size=(3000, 2000))  # nothing will read their pictures
         time.sleep(0.5)
         began = time.monotonic()
         self.child.close()
@@ -299,7 +300,8 @@ class Serve(unittest.TestCase):
         self.assertEqual((printed, serving._kept), ("", {}))
 
     def test_ends_with_who_started_it(self):
-        """However that one ends; though a picture is written meanwhile, and nobody ever reads."""
+        """The program ends with the process that started it, whatever ended that; also while a picture is written and
+        nothing reads its output."""
         self.scene.write(self.path("long.glb"), seen_from(0))
         script = ("import sys, time; sys.path.insert(0, sys.argv[1]); from penumbra import serving; child = serving.Child(sys.argv[2]); "
                   "child.send({'type': 'render', 'arguments': sys.argv[3:]}); print(child.process.pid, flush=True); time.sleep(99)")
@@ -310,13 +312,14 @@ class Serve(unittest.TestCase):
         parent.send_signal(signal.SIGKILL)
         parent.wait()
         end = time.monotonic() + 20
-        while os.path.exists(f"/proc/{number}/fd/0") and time.monotonic() < end:  # a process that has ended has none
+        while os.path.exists(f"/proc/{number}/fd/0") and time.monotonic() < end:  # an ended process has none
             time.sleep(0.05)
         self.assertLess(time.monotonic(), end, "the child lives on")
         self.assertEqual([name for name in os.listdir(self.folder.name) if "exr" in name], [])
 
     def test_a_forest_is_not_copied(self):
-        """As by render, and between pictures of scenes without instances."""
+        """As in `render`: the instances of a forest are not copied, also between pictures of scenes without
+        instances."""
         places = [{"translate": [0.5 * (i % 20) - 5, 0.3, 0.5 * (i // 20) - 8]} for i in range(600)]
         tree = {"name": "tree", "shape": {"type": "sphere", "radius": 0.4, "segments": 32}}
         scene = {"format": "penumbra-scene/1", "size": [24, 16], "camera": {"eye": [0, 3, 6], "target": [0, 0, 0]},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Stand-ins for Blender's own things where there is no Blender: values by name, sockets, nodes, images."""
+"""Stand-ins for Blender's objects for tests without Blender: values by name, sockets, nodes, images."""
 
 import types
 
@@ -19,13 +19,13 @@ class Socket:
         return bool(self.links)
 
     def link(self, node, name="Color"):
-        """Links to the node's output of that name."""
+        """Links to the node's output of the given name."""
         output = next((one for one in node.outputs if one.name == name), None) or box(name=name, identifier=name)
         self.links = [box(from_node=node, from_socket=output)]
 
 
 class Inputs(dict):
-    """Inputs by name and by number, as Blender's."""
+    """Inputs by name and by number, as in Blender."""
 
     def __getitem__(self, key):
         return list(self.values())[key] if isinstance(key, int) else super().__getitem__(key)

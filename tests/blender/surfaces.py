@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Colours that nodes and images make, beside Cycles; and what is refused or said of surfaces, lamps and cameras. Run inside Blender:
+"""Compares colours made by nodes and images with Cycles, and tests what is refused or mentioned of surfaces, lamps and
+cameras. Run inside Blender:
 
     run.sh surfaces.py ADDON.zip PENUMBRA WORK
 """
@@ -28,7 +29,7 @@ def colors(found):
 
 
 def by_cycles(scene, samples=64):
-    """Direct light, pixels' centres."""
+    """Renders with Cycles: direct light only, at pixels' centres."""
     scene.render.engine = "CYCLES"
     cycles = scene.cycles
     cycles.samples, cycles.seed, cycles.max_bounces, cycles.transparent_max_bounces = samples, 3, 0, 8
@@ -45,7 +46,7 @@ def lamp(**values):
 
 
 def chequers(size=8, steep=False):
-    """A picture whose texels differ much from their neighbours."""
+    """Returns a picture whose texels differ much from their neighbours."""
     image = bpy.data.images.new("Chequers", size, size)
     values = numpy.ones((size, size, 4), numpy.float32)
     across = numpy.arange(size)
@@ -71,7 +72,8 @@ class Tree:
         lamp()
 
     def node(self, kind, **values):
-        """`values`: inputs by number (_0), else properties; an output stands for a link to it."""
+        """Adds a node. `values`: inputs by number (_0), otherwise properties; an output as value is linked to the
+        input."""
         made = self.tree.nodes.new(kind)
         for key, value in values.items():
             if not key.startswith("_"):
@@ -94,7 +96,7 @@ class Tree:
 
 class Colors(unittest.TestCase):
     def beside_cycles(self, build, allowed=2e-3, pixel=0.02):
-        """Compares pixels that both light: sums, channel by channel, and pixel by pixel."""
+        """Compares with Cycles: the sums of each channel, and the median difference of pixels."""
         scene = inside.fresh(build)
         ours, theirs = colors(inside.channels(scene, out("ours.exr"))), by_cycles(scene)
         self.assertGreater(theirs.sum(), 1)
@@ -128,7 +130,7 @@ class Colors(unittest.TestCase):
                 self.beside_cycles(build)
 
     def test_constant_colours(self):
-        """Nodes whose inputs are all constants: each evaluates to one colour, so the surface has no picture."""
+        """Nodes with only constant inputs: each evaluates to one colour, so the surface has no picture."""
         one, two = (0.7, 0.6, 0.5, 1), (0.9, 0.5, 0.7, 1)
         nodes = [("ShaderNodeHueSaturation", dict(_0=0.6, _1=0.7, _2=1.1, _3=0.8, _4=one)),
                  ("ShaderNodeGamma", dict(_0=one, _1=1.7)), ("ShaderNodeBrightContrast", dict(_0=one, _1=0.1, _2=0.2)),
@@ -164,7 +166,7 @@ class Colors(unittest.TestCase):
         self.beside_cycles(build, 4e-3)
 
     def test_groups(self):
-        """A surface in a group, whose colour comes from outside, through another group."""
+        """A surface inside a group, whose colour comes from outside, through another group."""
         def build():
             tree = Tree()
             inner = bpy.data.node_groups.new("Dimmed", "ShaderNodeTree")
@@ -239,7 +241,8 @@ class Refusals(unittest.TestCase):
         self.assertFalse(numpy.array_equal(found["Clay.Combined.R"], alone["Combined.R"]))
 
     def test_instances_share_a_mesh_in_the_file(self):
-        """A mesh that a collection, particles or geometry nodes show many times, and once by itself, is in the file once."""
+        """A mesh that a collection, particles or geometry nodes show many times, and once by itself, is in the file
+        only once."""
         from penumbra import export, losses
         for build, name, count in ((scenes.instances, "Stone", 3), (scenes.particles, "Crumb", 21), (scenes.scattered, "Crumb", 5)):
             scene = inside.fresh(build)
@@ -282,7 +285,7 @@ class Refusals(unittest.TestCase):
             self.expect(scene, refused, mentioned)
 
     def shear(self, name):
-        """Shears a thing by a parent that is scaled unevenly, as seen from its turned child."""
+        """Shears an object by a non-uniformly scaled parent, relative to which the object is turned."""
         parent = scenes.add("Parent", None, scale=(1, 3, 1))
         thing = bpy.data.objects[name]
         matrix = thing.matrix_world.copy()

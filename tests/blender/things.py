@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A scene of things that the tests of `penumbra serve` put and write, seen as a 3D view sees it."""
+"""A scene of objects that tests of `penumbra serve` send and write, seen as a 3D view sees it."""
 
 import math
 import os
@@ -18,7 +18,7 @@ def at(x, y, z, scale=1.0, turn=0.0):
 
 
 def seen_from(angle, distance=7.0, height=4.0, ortho=False):
-    """A view of the origin, Z up, as a 3D view's matrices are."""
+    """Returns a view of the origin with Z up, with matrices like those of a 3D view."""
     eye = numpy.array([distance * math.sin(angle), -distance * math.cos(angle), height])
     back = eye / numpy.linalg.norm(eye)
     right = numpy.cross([0, 0, 1], back)
@@ -36,7 +36,7 @@ def seen_from(angle, distance=7.0, height=4.0, ortho=False):
 
 
 class Scene:
-    """Things by name, each a function that adds it to an exchange file, in their order."""
+    """The objects by name, in their order; each is a function that adds its object to an exchange file."""
 
     def __init__(self):
         self.things = {
@@ -49,7 +49,7 @@ class Scene:
 
     @staticmethod
     def mesh(name, corners, triangles, matrix, radiance=0.0, alpha=1.0, image=None):
-        """`image`: the values of four pixels, seen from above."""
+        """`image`: the values of four pixels, as seen from above."""
         def add(file):
             rows = numpy.array(corners, "<f4")
             attributes = {"POSITION": file.accessor(rows.tobytes(), "VEC3", bounds=(rows.min(axis=0), rows.max(axis=0)))}
@@ -91,7 +91,7 @@ class Scene:
         child.send({"type": "put", "things": names, "shadeless": sorted(file.shadeless), **folder}, file.encoded())
 
     def add_sky(self, folder, bright):
-        """A world with a picture, half of which is `bright`."""
+        """Adds a world with a picture, half of which has the value `bright`."""
         self.folder = folder
         texels = numpy.full((8, 16), 0.1, numpy.float32)
         texels[:, :8] = bright
@@ -100,7 +100,7 @@ class Scene:
         self.things["Sky"] = lambda file: file.dome("Sky", numpy.eye(4).tolist(), (1, 1, 1), "world.exr", True)
 
     def write(self, path, viewpoint):
-        """All of it in one file, as for F12."""
+        """Returns all objects in one file, as for F12 (render)."""
         file = glb.Glb()
         for add in self.things.values():
             add(file)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Turns a 3D view in Rendered shading until this Blender is killed, as killed.py does. Run inside Blender:
+"""Turns a 3D view in Rendered shading until killed.py kills this Blender. Run inside Blender:
 
     WINDOW=1 run.sh turning.py ADDON.zip PENUMBRA WORK
 
-When pictures come, WORK/out/processes.json says which processes there are, and which folder the view has.
+Once pictures come, WORK/out/processes.json lists the processes, and the view's folder.
 """
 
 import json
@@ -19,7 +19,7 @@ import inside  # noqa: E402
 import scenes  # noqa: E402
 from window import run, shown, until, view_3d  # noqa: E402
 
-LONGEST = 600  # seconds; then nobody will kill it
+LONGEST = 600  # seconds; if it was not killed by then, it ends by itself
 
 
 def turn():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The add-on in a 3D view of a Blender with a window: the view orbits, a lamp moves, a mesh is edited; what is shown in the end
-is what the program renders of the whole scene, byte for byte, and it is what is on the screen. Material Preview shows base
-colours. Run inside Blender:
+"""Tests the add-on in a 3D view of a Blender with a window: the view orbits, a lamp moves, a mesh is edited; the final
+picture is the same, byte for byte, as the program renders of the whole scene, and it is on the screen. Material Preview
+shows base colours. Run inside Blender:
 
     WINDOW=1 run.sh viewport.py ADDON.zip PENUMBRA WORK
 """
@@ -54,8 +54,8 @@ def compare_with_program(what):
 
 
 def displayed(picture):
-    """Returns the least and the greatest display values that a pixel may show of a picture over the grey world, first row at the
-    bottom. They are those of its neighbours: drivers of processors weigh texels in 256 steps."""
+    """Returns the smallest and the largest display values that a pixel may show of a picture over the grey world, first
+    row at the bottom. They are those of its neighbours, because processor drivers weigh texels in 256 steps."""
     values = numpy.clip(picture.rgba[::-1, :, :3] + (1 - picture.rgba[::-1, :, 3:]) * 0.05, 0, 1)
     values = numpy.where(values < 0.0031308, 12.92 * values, 1.055 * values ** (1 / 2.4) - 0.055)
     near = [numpy.roll(values, (x, y), (0, 1)) for x in (-1, 0, 1) for y in (-1, 0, 1)]
@@ -63,11 +63,12 @@ def displayed(picture):
 
 
 def compare_with_screen(what, earlier=None):
-    """The screen shows the picture, and not the earlier one."""
-    inner = numpy.s_[24:-24, 24:-24]  # rounded corners, and arrows that open side bars
+    """Expects that the screen shows the picture, and not the earlier one."""
+    inner = numpy.s_[24:-24, 24:-24]  # without rounded corners, and without arrows that open side bars
 
     def differ(picture):
-        """Returns the share of pixels that differ by more than half floats, dithering and rounding to 8 bits can make of them."""
+        """Returns the share of pixels that differ by more than half floats, dithering and rounding to 8 bits can
+        explain."""
         least, greatest = displayed(picture)
         return float((numpy.maximum(least - seen, seen - greatest)[inner].max(axis=-1) > 0.015).mean())
     for _ in range(20):
@@ -87,7 +88,7 @@ def compare(what, earlier):
 
 
 def painted(color):
-    """Materials that show this colour by a Diffuse BSDF, by a Principled BSDF, and by the picture of one."""
+    """Yields materials that show this colour by a Diffuse BSDF, by a Principled BSDF, and by the latter's picture."""
     def principled(name):
         material = bpy.data.materials.new(name)
         material.use_nodes = True
@@ -106,16 +107,17 @@ def painted(color):
 
 
 def test_material_preview(area, region, space):
-    """Cubes that are grey in Solid shading show their base colour, and no program works for them."""
+    """Cubes that are grey in Solid shading show their base colour in Material Preview, for which no program runs."""
     channel = {}
     for x, (color, number) in zip((2.4, 0.4, -1.6), (((0.7, 0.02, 0.02), 0), ((0.02, 0.5, 0.02), 1), ((0.02, 0.02, 0.8), 2))):
-        for y, material in zip((-2.8, -1.8, 2.2), painted(color)):  # seen from +x, none behind another
+        for y, material in zip((-2.8, -1.8, 2.2), painted(color)):  # as seen from +x, no cube is behind another
             data = scenes.cube("Painted", material, 0.3)
             data.uv_layers.new()
             channel[scenes.add("Painted", data, (x, y, 0.31))] = number
 
     def ratios(name):
-        """Returns of each cube how its colour stands out on the screen: its channel over the larger of the others."""
+        """Yields for each cube how clearly its colour shows on the screen: its channel over the larger of the other
+        two."""
         seen = on_screen(out(name))
         for cube, number in channel.items():
             x, y = (int(value) for value in location_3d_to_region_2d(region, space.region_3d, cube.location))
@@ -128,7 +130,7 @@ def test_material_preview(area, region, space):
     solid = list(ratios("solid.png"))
     expect(max(solid) < 1.3, f"Solid shading shows grey: {solid}")
     space.shading.type = "MATERIAL"
-    for _ in range(600):  # EEVEE compiles its shaders meanwhile
+    for _ in range(600):  # EEVEE compiles its shaders in the meantime
         area.tag_redraw()
         yield 0.5
         preview = list(ratios("preview.png"))
@@ -139,7 +141,7 @@ def test_material_preview(area, region, space):
 
 
 def note_exceptions():
-    """Returns a list that will have all exceptions, those that Blender or the add-on catches and prints, too."""
+    """Returns a list that will hold all exceptions, including those that Blender or the add-on catches and prints."""
     thrown, report, own = [], sys.excepthook, traceback.print_exc
 
     def hook(kind, error, where):
@@ -200,7 +202,7 @@ def test():
     bpy.data.lights["Point"].energy *= 3
     yield from final("no picture came after a lamp was brightened")
     seen = yield from compare("a brighter lamp", seen)
-    # A mesh is edited, an object goes, another comes.
+    # A mesh is edited, an object is removed, another is added.
     sent.clear()
     mesh = bpy.data.objects["Block"].data
     for vertex in mesh.vertices:
@@ -220,7 +222,7 @@ def test():
     area.tag_redraw()
     yield from final("no picture came after Material Preview")
     seen = yield from compare("painted cubes", seen)
-    # Another lens, and through the camera.
+    # Another lens, then the view through the camera.
     bpy.data.cameras["Shot"].show_passepartout = False
     place.view_perspective = "ORTHO"
     area.tag_redraw()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what a 3D view of the add-on sends and says, without Blender: what was refused is sent again; a picture of the world that is
-replaced while it is read.
+"""Tests what the add-on's 3D view sends and reports, without Blender: refused objects are sent again; a picture of the
+world is replaced while it is being read.
 
     views.py ADDON.zip PENUMBRA
 """
@@ -15,7 +15,7 @@ import unittest
 from unittest import mock
 
 ZIP, PENUMBRA = sys.argv[1:3]
-sys.path.insert(0, ZIP)  # what users get is what is tested
+sys.path.insert(0, ZIP)  # tests the code that users get
 for name in ("bpy", "bpy.props", "gpu", "gpu_extras", "gpu_extras.presets"):
     sys.modules[name] = mock.MagicMock()
 
@@ -28,7 +28,7 @@ WANTED = mock.MagicMock(exactness="EXACT", method="")
 
 
 def viewpoint(x=0.0):
-    """Returns a parallel view from above."""
+    """Returns an orthographic view from above."""
     return Viewpoint([[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]],
                      [[0.5, 0, 0, 0], [0, 0.5, 0, 0], [0, 0, -0.01, 0], [0, 0, 0, 1]], (40, 40))
 
@@ -84,7 +84,7 @@ class WithAProgram(unittest.TestCase):
         self.wait(lambda: "magic" in self.view.said)
         self.view._show(WANTED, changed=False)
         self.wait(self.view.is_final)
-        self.assertEqual(float(self.view.picture.rgba[20, 20, 3]), 0.0)  # beside the floor
+        self.assertEqual(float(self.view.picture.rgba[20, 20, 3]), 0.0)  # this pixel is next to the floor
 
     def test_things_that_were_refused_are_sent_again(self):
         self.put("Object/Floor", floor)
@@ -94,7 +94,7 @@ class WithAProgram(unittest.TestCase):
         self.view.child.send({"type": "order", "things": ["Object/Moon"]})
         self.view.look(viewpoint(), WANTED)
         self.wait(self.view.is_final)
-        self.assertIn("GLB", self.view.said)  # the cause, though a picture of the earlier things has come
+        self.assertIn("GLB", self.view.said)  # the cause, even after a picture of the earlier objects
         self.assertEqual((self.view._marks, self.view._order), ({}, []))
         self.assertEqual(self.view._sent, {"Object/Floor", "Object/Lamp"})  # so that they can be removed
 
@@ -117,11 +117,11 @@ class WithoutAProgram(unittest.TestCase):
             return view.said
 
         error = {"type": "say", "level": "error", "text": "no method magic", "refused": "show"}
-        self.assertIn("magic", take(1, 1, {**error, "stamp": 2, "arrival": 0}))  # the picture of the `show` before
+        self.assertIn("magic", take(1, 1, {**error, "stamp": 2, "arrival": 0}))  # the picture is that of the earlier `show`
         self.assertIn("magic", take(2, 2))
         self.assertEqual(take(3, 3), "")
         unstamped = {"type": "say", "level": "error", "text": "there is no light", "arrival": 5}
-        self.assertIn("light", take(4, 4, unstamped))  # a picture that came before the error, taken with it
+        self.assertIn("light", take(4, 4, unstamped))  # the picture came before the error, and is taken together with it
         self.assertEqual(take(6, 4), "")
 
     def test_a_picture_of_the_world_is_replaced_whole(self):

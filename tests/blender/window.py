@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Shared by scripts that run inside a Blender with a window: its first 3D view, what is on the screen, and steps between which
-Blender goes on."""
+"""Code shared by scripts that run inside a Blender with a window: its first 3D view, the pixels on the screen, and
+steps between which Blender's main loop continues."""
 
 import os
 import sys
@@ -18,7 +18,7 @@ def view_3d():
 
 
 def clear(space):
-    """Hides all that stands before the picture."""
+    """Hides everything that covers the picture."""
     space.overlay.show_overlays = space.show_gizmo = space.show_region_header = space.show_region_tool_header = False
     space.show_region_toolbar = space.show_region_ui = False
 
@@ -30,7 +30,8 @@ def shown():
 
 
 def on_screen(path):
-    """Returns the 3D view as the screen shows it, height x width x 3, first row at the bottom; `path`: of the screenshot, a PNG."""
+    """Returns the 3D view as the screen shows it, height x width x 3, first row at the bottom; `path` is the file of
+    the screenshot, a PNG."""
     bpy.ops.screen.screenshot(filepath=path)
     image = bpy.data.images.load(path)
     pixels = numpy.array(image.pixels, numpy.float32).reshape(image.size[1], image.size[0], 4)
@@ -40,7 +41,7 @@ def on_screen(path):
 
 
 def until(condition, what, seconds=120):
-    """Blender goes on meanwhile."""
+    """Waits for the condition while Blender's main loop continues."""
     end = time.monotonic() + seconds
     while not condition():
         if time.monotonic() > end:
@@ -50,14 +51,15 @@ def until(condition, what, seconds=120):
 
 
 def final(what):
-    """The final picture of what there is now."""
-    for _ in range(5):  # Blender notices
+    """Waits for the final picture of the current state."""
+    for _ in range(5):  # Blender notices the change
         yield 0.02
     yield from until(lambda: shown() is not None and shown().is_final(), what)
 
 
 def run(steps, failures=lambda: 0):
-    """Takes the steps by a timer; each yields the seconds until the next. Then Blender ends, with 1 after an exception or failures."""
+    """Runs the steps by a timer; each yields the seconds until the next. Then ends Blender, with 1 after an exception
+    or failures."""
     def step():
         try:
             return next(steps)

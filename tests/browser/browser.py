@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Headless Chromium through its debugging pipe, with Python's standard library alone: open a page, press keys, move the
-pointer, ask, photograph. https://chromedevtools.github.io/devtools-protocol/ has the names of the methods."""
+"""Controls headless Chromium through its debugging pipe, with only Python's standard library: opens a page, presses
+keys, moves the pointer, evaluates expressions, takes pictures. https://chromedevtools.github.io/devtools-protocol/ has
+the names of the methods."""
 import base64
 import json
 import os
@@ -14,7 +15,7 @@ MODIFIERS = {"Alt": 1, "Ctrl": 2, "Shift": 8}
 
 
 class Browser:
-    """One window. `with Browser() as browser:` closes it."""
+    """One window. `with Browser() as browser:` closes it at the end."""
 
     def __enter__(self):
         program = shutil.which("chromium")
@@ -25,7 +26,7 @@ class Browser:
         self.from_browser, from_browser = os.pipe()
         command = [program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run",
                    "--remote-debugging-pipe", f"--user-data-dir={self.profile.name}", "about:blank"]
-        # The browser reads from 3 and writes to 4, whatever numbers they have here.
+        # The browser reads from descriptor 3 and writes to 4, whatever numbers the pipes have here.
         self.process = subprocess.Popen(["/bin/sh", "-c", f'exec "$@" 3<&{to_browser} 4>&{from_browser}', "sh", *command],
                                         pass_fds=(to_browser, from_browser), stdout=subprocess.DEVNULL,
                                         stderr=subprocess.DEVNULL)
@@ -44,7 +45,7 @@ class Browser:
         os.close(self.from_browser)
         self.process.kill()
         self.process.wait()
-        for _ in range(50):  # helpers of the browser may still be writing
+        for _ in range(50):  # helper processes of the browser may still be writing
             try:
                 self.profile.cleanup()
                 return
@@ -75,7 +76,7 @@ class Browser:
         return json.loads(text)
 
     def note(self, event):
-        """Notes what a page should not do: throw, complain, or ask for anything but itself."""
+        """Records what a page should not do: throw, log errors, or request anything but itself."""
         name, values = event.get("method"), event.get("params", {})
         if name == "Runtime.exceptionThrown":
             self.problems.append(json.dumps(values["exceptionDetails"]))
@@ -85,7 +86,7 @@ class Browser:
             self.problems.append(f"asks for {values['request']['url']}")
 
     def open(self, url, width=1280, height=800, dark=False, phone=False, script=True):
-        """An empty page comes between, so that a new hash is a new page."""
+        """Opens an empty page first, so that another hash loads the page again."""
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=phone)
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme",
                                                            "value": "dark" if dark else "light"}])
@@ -95,7 +96,7 @@ class Browser:
             self.wait("document.readyState === 'complete'" + (" && location.href !== 'about:blank'" if address == url else ""))
 
     def ask(self, expression):
-        """The value of an expression of JavaScript, promises awaited."""
+        """Returns the value of a JavaScript expression; waits for promises."""
         result = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
         if "exceptionDetails" in result:
             raise RuntimeError(f"{expression}: {json.dumps(result['exceptionDetails'])}")
@@ -128,7 +129,7 @@ class Browser:
         self.pointer("mouseReleased", x, y, button="left", clickCount=1)
 
     def picture(self, whole=False):
-        """The page as the bytes of a PNG file; `whole`: what is below the window too."""
+        """Returns the page as the bytes of a PNG file; `whole` includes the part below the window."""
         return base64.b64decode(self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"])
 
     def photograph(self, path, whole=False):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Claims of tests of pages and live views: all are looked at, and those that do not hold are printed."""
+"""Checks for tests of pages and live views: all of them are made, and those that fail are printed."""
 
 _failed = []
 
@@ -15,6 +15,6 @@ def same(found, wanted, what):
 
 
 def verdict():
-    """The exit code."""
+    """Prints the result and returns the exit code."""
     print("failed" if _failed else "all is as it should be")
     return 1 if _failed else 0

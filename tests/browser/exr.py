@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Just as much OpenEXR as OUT.exr needs: scan lines, ZIP or none, 32-bit channels."""
+"""Reads only as much of OpenEXR as OUT.exr needs: scan lines, ZIP or no compression, 32-bit channels."""
 import struct
 import zlib
 
 
 def unzip(data, size):
-    """A block as the format keeps it: deflated, of differences, the even bytes before the odd ones."""
+    """Unpacks a block: it is deflated, stored as differences, with the even bytes before the odd ones."""
     if len(data) == size:
         return data
     steps = bytearray(zlib.decompress(data))
@@ -18,7 +18,7 @@ def unzip(data, size):
 
 
 def read_exr(path):
-    """{channel: [value of each pixel]} and (width, height)."""
+    """Returns {channel: [value of each pixel]} and (width, height)."""
     with open(path, "rb") as file:
         data = file.read()
     assert data[:4] == b"\x76\x2f\x31\x01"
@@ -52,7 +52,7 @@ def read_exr(path):
 
 
 def read_bits(path):
-    """The mask of each pixel as a string of 0 and 1, in the order of light samples."""
+    """Returns the mask of each pixel as a string of 0 and 1, in the order of light samples."""
     with open(path, "rb") as file:
         line = file.readline()
         data = file.read()

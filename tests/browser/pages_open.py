@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Opens the live view and a report in headless Chromium: both draw what they are for, and their scripts complain of nothing.
+"""Opens the live view and a report in headless Chromium: both draw their contents, and their scripts report no errors.
   pages_open.py PROGRAM"""
 import pathlib
 import subprocess
@@ -17,7 +17,7 @@ ROOT, SPACE = "document.documentElement.dataset", "document.getElementById('spac
 
 
 def check_view(browser, program, scene):
-    """The picture, another one after a key, and the 3D view."""
+    """Checks the picture, another one after a key, and the 3D view."""
     with Server(program, scene) as server:
         browser.open(server.url)
         browser.wait(f"{ROOT}.exact === 'true'")
@@ -28,7 +28,7 @@ def check_view(browser, program, scene):
         if browser.ask("document.getElementById('tab-space') !== null"):
             browser.ask("document.getElementById('tab-space').click()")
             browser.wait(f"{SPACE}.busy === 'false' && Number({SPACE}.drawn) > 0")
-        browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it, and complains
+        browser.call("Page.navigate", url="about:blank")  # a page whose server has ended would search for it and log errors
 
 
 def check_report(browser, program, scene, folder):

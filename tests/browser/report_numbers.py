@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests tables, plots and words of the report in a browser, where a script draws them from the JSON in the page: those of a real
-comparison are held against metrics.json, others come from JSON that the test changes.
+"""Tests tables, plots and texts of the report in a browser, where a script draws them from the JSON in the page. Those
+of a real comparison are compared with metrics.json; others come from JSON that the test changes.
   report_numbers.py PROGRAM SCENE [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
 import copy
 import csv
@@ -25,13 +25,13 @@ WINDOWS = {"wide": {"width": 1400, "height": 900}, "narrow": {"width": 390, "hei
 
 
 def general(number):
-    """Three significant digits, as the page writes them."""
+    """Formats a number with three significant digits, as the page does."""
     mantissa, _, exponent = f"{number:.3g}".partition("e")
     return (mantissa + (f"e{int(exponent)}" if exponent else "")).replace("-", "−", 1 if number < 0 else 0)
 
 
 class Numbers:
-    """The page of a comparison, as it is and with its JSON changed."""
+    """The page of a comparison, unchanged or with its JSON changed."""
 
     def __init__(self, browser, folder):
         self.browser, self.folder = browser, folder
@@ -40,7 +40,7 @@ class Numbers:
         self.metrics = json.loads((folder / "metrics.json").read_text(encoding="utf-8"))
 
     def open(self, change=None, hash="", **window):
-        """Opens the page. `change`: function that changes its JSON in place."""
+        """Opens the page. `change` is a function that changes the page's JSON in place."""
         data = copy.deepcopy(self.data)
         if change:
             change(data)
@@ -50,7 +50,8 @@ class Numbers:
         self.browser.open(path.as_uri() + hash, **window)
 
     def table(self, caption):
-        """Returns rows of [text, value, class of the cell's content] of the table whose caption begins with `caption`; None: there is no such table."""
+        """Returns rows of [text, value, class of the cell's content] of the table whose caption begins with `caption`,
+        or None if there is no such table."""
         return self.browser.ask(f"""(() => {{
             const table = [...document.querySelectorAll('table.sortable')].find(t => t.caption.textContent.startsWith({json.dumps(caption)}));
             return table && [...table.rows].slice(1).map(row => [...row.cells].map(cell =>
@@ -70,7 +71,7 @@ def error_row(name, error, *more):
 
 
 def check_tables(page):
-    """Every table has the numbers of metrics.json, all digits."""
+    """Every table has the numbers of metrics.json, with all digits."""
     page.open()
     metrics, methods = page.metrics, page.metrics["methods"]
     rays, lights = metrics["sameSamples"], [light["name"] for light in methods[0]["lights"]]
@@ -106,7 +107,7 @@ def check_tables(page):
 
 
 def rows_under(page, caption, light):
-    """Values of the table of pairs of one light."""
+    """Returns the values of the table of pairs of one light."""
     return page.browser.ask(f"""(() => {{
         const table = [...document.querySelectorAll('table.sortable')].find(t => t.caption.textContent.startsWith({json.dumps(caption)})
             && t.caption.textContent.includes({json.dumps(light)}));
@@ -139,7 +140,7 @@ def check_sorting(page):
 
 
 def check_texts(page):
-    """Numbers as people read them: three digits, thousands apart, seconds and bytes in their units."""
+    """Numbers are written for people: three digits, thousands separated, seconds and bytes in suitable units."""
     error = dict(zip(("mean", "rmse", "p999", "max", "over05", "bias"), (0.1, 0.2, 0.3, 0.4, 0.5, -0.6)))
     page.open(lambda data: data["metrics"]["methods"][0].update(errorAllLights=error))
     same([cell[0] for cell in page.table("Error of V against raytrace under all lights")[0][1:-1]], ["0.1", "0.2", "0.3", "0.4", "50 %", "−0.6"], "errors as texts")
@@ -197,7 +198,7 @@ def check_findings(page):
 
 
 def check_gaps(page):
-    """Failures, and what was not measured."""
+    """Failures, and values that were not measured."""
     def fail(data):
         failed = data["metrics"]["methods"][1]
         failed |= {key: None for key in ("error", "errorAllLights", "horizonError", "beautyError", "separation")}
@@ -237,7 +238,7 @@ def check_gaps(page):
 
 
 def check_foreign_texts(page):
-    """Names may hold anything: none becomes markup, and none runs."""
+    """Names may contain anything: none becomes markup, and none is executed."""
     evil = "</script><img src=x onerror=\"window.evil = 1\"><script>window.evil = 1</script>'&{}"
 
     def change(data):
@@ -266,8 +267,9 @@ def check_foreign_texts(page):
 
 
 def check_plot(page):
-    """Marks lie at their seconds and errors, names inside the drawing without overlap, errors of 0 on a line of their own."""
-    seconds, errors = (0.02, 0.2, 0.2), (0.004, 0.03, 0.03)  # two of them on the same place
+    """Marks are at their seconds and errors, names are inside the drawing and do not overlap, errors of 0 are on a
+    separate line."""
+    seconds, errors = (0.02, 0.2, 0.2), (0.004, 0.03, 0.03)  # two of them are at the same place
 
     def change(data):
         for result, s, e in zip(data["metrics"]["methods"], seconds, errors):
@@ -312,8 +314,8 @@ def check_plot(page):
 
 
 def check_budget(page, photographs):
-    """The error budget: every light's table has the numbers of metrics.json, with bars of the right length on the right side, and
-    the runs that gave them; the keyboard sorts and opens it."""
+    """Checks the error budget: every light's table has the numbers of metrics.json, with bars of the right length on
+    the right side, and the runs that gave them; the keyboard sorts and opens it."""
     browser, url = page.browser, (page.folder / "report.html").as_uri() + "#error-budget"
     browser.open(url)
     methods = page.metrics["methods"]

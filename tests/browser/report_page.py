@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The report in a browser, by keys and by pointer, against the files beside it.
+"""Tests the report in a browser, by keys and by pointer, against the files next to it.
   report_page.py PROGRAM SCENE [PHOTOGRAPHS]   PHOTOGRAPHS: a folder for pictures of the page, for people to look at"""
 import json
 import pathlib
@@ -21,7 +21,7 @@ READ = "document.getElementById('viewer').dataset.read"
 
 
 def file_stem(entry):
-    """Names of files have no colon."""
+    """Returns the entry as a file name, which has no colon."""
     return entry.replace(":", ",")
 
 
@@ -36,7 +36,7 @@ class Page:
         self.url = (self.folder / "report.html").as_uri()
         self.metrics = json.loads((self.folder / "metrics.json").read_text())
         self.lights = [light["name"] for light in self.metrics["methods"][0]["lights"]]
-        # The viewer's entries in order; rays on the methods' samples have no file of their own.
+        # The viewer's entries in order; rays on the methods' samples have no file.
         self.entries = ["reference", None, *METHODS]
         self.exr = {name: read_exr(self.folder / f"{file_stem(name)}.exr")[0] for name in self.entries if name}
         self.bits = {name: read_bits(self.folder / f"{file_stem(name)}.bits") for name in ("edge-scatter", "accumulate:size=16")}
@@ -68,19 +68,19 @@ class Page:
             return {x: b.x, y: b.y, width: b.width, height: b.height}; })()""")
 
     def place(self, x, y):
-        """The middle of a pixel on the stage when one whole picture is shown."""
+        """Returns the middle of a pixel on the stage when one whole picture is shown."""
         stage = self.stage()
         scale = min(stage["width"] / WIDTH, stage["height"] / HEIGHT)
         return (stage["width"] / 2 + (x + 0.5 - WIDTH / 2) * scale, stage["height"] / 2 + (y + 0.5 - HEIGHT / 2) * scale)
 
     def colors(self, places):
-        """Returns what the stage shows at these places: [red, green, blue] each."""
+        """Returns the colours of the stage at these places: [red, green, blue] each."""
         return self.browser.ask(f"""(() => {{ const c = document.querySelector('#viewer-stage canvas').getContext('2d');
             return {json.dumps(places)}.map(([x, y]) => [...c.getImageData(x, y, 1, 1).data.slice(0, 3)]); }})()""")
 
 
 def check_readout(page):
-    """V, error and masks of pixels of every kind are those of the files, to the last bit."""
+    """V, error and masks of pixels of every kind equal those in the files, to the last bit."""
     penumbra = max(range(WIDTH * HEIGHT), key=lambda i: -abs(page.v(2, 0, i) - 0.5))
     second = max(range(WIDTH * HEIGHT), key=lambda i: -abs(page.v(2, 1, i) - 0.5))
     differing = next(i for i in range(WIDTH * HEIGHT)
@@ -142,18 +142,18 @@ def check_keys(page):
     page.browser.wait(f"{READ} === '11,12'")
     expect("Pixel 11, 12" in page.browser.ask("document.querySelector('#viewer-place[role=status]').textContent"),
            "the read-out is said")
-    # The address keeps the view: opened again it is the same.
+    # The address keeps the view: when it is opened again, the view is the same.
     page.look("layer=error&a=3&light=1&view=one&limit=0.2&pixel=5,6")
     page.browser.wait("location.hash.includes('limit=0.2')")
     same((page.title(), page.browser.ask("document.getElementById('viewer-limit').value")), ("Error: pcss", "0.2"), "limit")
-    # An address that names no view of this report is put right.
+    # An address that names no view of this report is corrected.
     page.look("layer=nothing&a=99&b=x&light=-7&view=7&wipe=NaN&zoom=1e9&pixel=1e9,-4&limit=-1&constructor=1")
     same(page.title(), "V: raytrace (reference)", "an address of nonsense")
     page.values()
 
 
 def check_from_the_page(page):
-    """Tab and Enter open a picture, Escape closes it and the focus is where it was."""
+    """Tab and Enter open a picture; Escape closes it, and the focus returns to where it was."""
     browser = page.browser
     browser.open(page.url)
     browser.ask("document.querySelector('nav a[href=\"#pictures\"]').click()")
@@ -167,7 +167,7 @@ def check_from_the_page(page):
     browser.key("Escape")
     browser.wait("!document.getElementById('viewer').open")
     same(browser.ask("document.activeElement.dataset.entry"), "3", "the focus is back")
-    # Tab reaches every control, and stays in the viewer.
+    # Tab reaches every control, and stays inside the viewer.
     page.look("view=wipe&layer=error")
     reached = set()
     for _ in range(60):
@@ -183,7 +183,7 @@ def check_from_the_page(page):
 
 
 def check_pictures(page):
-    """The viewer paints what the page's own pictures show; the wipe has one on either side."""
+    """The viewer paints the same as the page's own pictures; the wipe shows one on either side."""
     browser, places = page.browser, [(7 * i % WIDTH, 13 * i % HEIGHT) for i in range(96)]
     painted = {}
     for layer, entry, light, most in (("v", 3, 0, 0), ("v", 2, 1, 0), ("error", 3, 0, 0), ("error", 4, 1, 0), ("beauty", 3, 0, 1)):
@@ -212,9 +212,9 @@ def check_pictures(page):
     for (x, y), v, error, shown in zip(places, painted["v", 3, 0], painted["error", 3, 0],
                                        page.colors([page.place(x, y) for x, y in places])):
         at = page.place(x, y)
-        if abs(at[0] - stage["width"] / 2) > 3 and at[1] > 24:  # beside the line, below the names
+        if abs(at[0] - stage["width"] / 2) > 3 and at[1] > 24:  # away from the line, and below the names
             same(shown, v if at[0] < stage["width"] / 2 else error, f"the wipe at {x},{y}")
-    # The pointer drags it, and reads.
+    # The pointer drags the wipe, and reads values.
     middle = (stage["x"] + stage["width"] / 2, stage["y"] + stage["height"] / 2)
     browser.pointer("mousePressed", *middle, button="left", clickCount=1)
     browser.pointer("mouseMoved", stage["x"] + stage["width"] / 4, middle[1], button="left", buttons=1)
@@ -225,7 +225,7 @@ def check_pictures(page):
     browser.pointer("mouseMoved", stage["x"] + at[0], page.stage()["y"] + at[1])
     browser.wait(f"{READ} === '30,60'")
     same(float(page.values()[3]["v"]), page.v(3, 0, 60 * WIDTH + 30), "V under the pointer")
-    # One zoom for all: the wheel at a place keeps that place, whichever picture.
+    # All pictures share one zoom: the wheel keeps the place under the pointer, in whichever picture.
     browser.call("Input.dispatchMouseEvent", type="mouseWheel", x=stage["x"] + at[0], y=page.stage()["y"] + at[1], deltaX=0, deltaY=-480)
     browser.wait("document.getElementById('viewer-zoom-text').value === '400 %'")
     for key in ("ArrowRight", "ArrowLeft"):
@@ -235,7 +235,7 @@ def check_pictures(page):
 
 
 def check_first_look(page):
-    """The page begins with a wipe between the worst and the best method, which a key moves and a button opens."""
+    """The page begins with a wipe between the worst and the best method; a key moves it and a button opens it."""
     browser = page.browser
     browser.open(page.url)
     browser.wait("document.getElementById('look').dataset.painted === '50'")
@@ -252,7 +252,8 @@ def check_first_look(page):
     browser.ask("document.querySelector('#look button').click()")
     browser.wait(f"document.getElementById('viewer').open && {READY}")
     same(browser.ask("document.getElementById('viewer-wipe').value"), "49", "the viewer goes on where the line is")
-    # The page as opened is three screens at most, wide and narrow. Text is never smaller than 14 pixels.
+    # The page as opened is at most three screens long, on a wide and on a narrow window. No text is smaller than 14
+    # pixels.
     for window in ({"width": 1400, "height": 900}, {"width": 390, "height": 844, "phone": True}):
         browser.open(page.url, **window)
         browser.wait("document.getElementById('look').dataset.painted === '50'")
@@ -270,7 +271,8 @@ def check_first_look(page):
 
 
 def check_live(page, scene):
-    """"Open live": the command of the live view with two methods, to copy by a key, and the address of a view that is running."""
+    """The dialog "Open live": the command of the live view with two methods, which a key copies, and the address of a
+    running view."""
     browser = page.browser
     say = "document.getElementById('live-say').textContent"
     browser.open(page.url)
@@ -305,7 +307,7 @@ def check_live(page, scene):
 
 
 def check_windows(page, photographs):
-    """Nothing is wider than the window; what people should look at is photographed."""
+    """Nothing is wider than the window; takes pictures of the parts that people should look at."""
     browser = page.browser
     wide, narrow = {"width": 1400, "height": 900}, {"width": 390, "height": 844, "phone": True}
     for name, window in (("wide", wide), ("narrow", narrow), ("dark", {**wide, "dark": True})):

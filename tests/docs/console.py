@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the commands of a page as a reader would, from top to bottom, in a folder that holds scenes/:
+"""Runs the commands of a page as a reader would, from top to bottom, in a folder that has scenes/:
 
-  console.py PROGRAM SOURCE PAGE              fails where a command prints something else than the page says
+  console.py PROGRAM SOURCE PAGE              fails if a command prints something else than the page says
   console.py PROGRAM SOURCE PAGE --show       prints what each command prints
   console.py PROGRAM SOURCE PAGE --pictures   writes the page's pictures of docs/images/start/ from what the commands wrote
 
-Commands are the lines that begin with "$ " in blocks of the kind `console`; below each is its standard output, where "…" stands for
-any text and a line "…" for any lines. A line "(exit code N)" ends the output of a command that fails. `penumbra` and `./run.sh` are the program. A block of
-JSON below a line "`NAME`:" is a file. A page with
-pictures of docs/images/start/ has to write files of these names."""
+Commands are the lines that begin with "$ " in blocks of the kind `console`; below each is its standard output, where "…"
+stands for any text and a line "…" for any lines. A line "(exit code N)" ends the output of a command that fails.
+`penumbra` and `./run.sh` are the program. A block of JSON below a line "`NAME`:" is a file of that name. If a page shows
+pictures of docs/images/start/, its commands have to write files of these names."""
 
 import os
 import re
@@ -21,7 +21,7 @@ from pathlib import Path
 
 
 def commands(page):
-    """The commands of a page, each with the lines that it has to print."""
+    """Returns the commands of a page, each with the lines that it has to print."""
     found = []
     for block in re.findall(r"^```console\n(.*?)^```", page, re.S | re.M):
         for line in block.splitlines():
@@ -56,7 +56,7 @@ def main():
     listed = commands(text)
     files = re.findall(r"^`([\w.-]+)`:\n+```json\n(.*?)^```", text, re.S | re.M)
     assert listed, f"{page} has no commands"
-    for shown in ("a 0.3 s", "a\nb", "a 1 s\nb"):  # what it looks for it finds
+    for shown in ("a 0.3 s", "a\nb", "a 1 s\nb"):  # tests that the pattern finds what it should
         assert matches(shown + "\n", ["a …", "…"]) == shown.startswith("a "), shown
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)

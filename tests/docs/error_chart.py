@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""bench/error_chart.py on lines written by hand: marks lie where seconds and errors say, and what cannot be drawn is counted."""
+"""Tests bench/error_chart.py on lines written by hand: marks are where seconds and errors put them, and results that
+cannot be drawn are counted."""
 import json
 import pathlib
 import subprocess
@@ -35,7 +36,8 @@ def main():
         texts = ["".join(text.itertext()) for text in root.iter(SVG + "text")]
         for wanted in ("a_scene", "b<b>", "exact & right", "1 points without error are not shown", "RMSE of V to exact; numbers are light samples"):
             assert wanted in texts, (wanted, texts)
-        # The axes span 0.01 to 1 s and 0.001 to 0.1; a plot is 340 × 250 pixels at 62, 56 + 2 · 18 + 40, the second 420 further.
+        # The axes span 0.01 to 1 s and 0.001 to 0.1; a plot is 340 × 250 pixels at 62, 56 + 2 · 18 + 40, the second one
+        # 420 further right.
         x = {0.01: 62, 0.1: 62 + 170, 1: 62 + 420 + 340}
         y = {0.1: 132, 0.001: 132 + 250, 0.01: 132 + 125}
         circles = {(float(c.get("cx")), float(c.get("cy"))) for c in root.iter(SVG + "circle")}

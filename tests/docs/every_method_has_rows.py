@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every method of the program has a row in the bench's tables of seconds and error, and every one of planar lights has its place in
-the ranking: every_method_has_rows.py PROGRAM ROOT."""
+"""Tests that every method of the program has a row in the bench's tables of seconds and error, and that every method
+for planar lights is in the ranking: every_method_has_rows.py PROGRAM ROOT."""
 
 import json
 import re

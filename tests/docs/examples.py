@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the example in the help of each command as a reader would, in a folder that holds scenes/:
+"""Runs the example in the help of each command as a reader would, in a folder that has scenes/:
 
   examples.py PROGRAM SOURCE
 
-`view` is started and stopped when it has printed its address; `submit` is not run, since its example is for a farm."""
+`view` is started, and stopped when it has printed its address; `submit` is not run, since its example is for a farm."""
 
 import os
 import re

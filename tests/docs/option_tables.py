@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what docs/option_tables.py --check finds missing on a method's page: option_tables.py DOCS."""
+"""Tests which options docs/option_tables.py --check reports as missing on a method's page: option_tables.py DOCS."""
 
 import sys
 import tempfile
@@ -13,7 +13,7 @@ OWNED = option_tables.SHARED["map-fits.md"]
 
 
 def missing(page, *options, lights=("sun",)):
-    """Names of `options` that are missing where a method's own page is `page`."""
+    """Returns the names among `options` that are missing if a method's own page is `page`."""
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         (folder / "m.md").write_text(page, encoding="utf-8")
@@ -30,8 +30,8 @@ def expect(found, wanted):
 
 
 expect(missing("| `size` | and `m:bias=2` |", "size", "bias"), [])
-expect(missing("| `mapsize` | and `rebias=2`, `re-bias=2` |", "size", "bias"), ["size", "bias"])  # parts of other names
-expect(missing("see [shadow-map](shadow-map.md)", "size"), ["size"])  # a page that does not own the option
+expect(missing("| `mapsize` | and `rebias=2`, `re-bias=2` |", "size", "bias"), ["size", "bias"])  # these are only parts of other names
+expect(missing("see [shadow-map](shadow-map.md)", "size"), ["size"])  # that page does not own the option
 expect(missing("see [fits](map-fits.md)", OWNED[0], "other"), ["other"])
 expect(missing("no page is referred to", "suns", lights=("sun", "dome")), [])
 expect(missing("no page is referred to", "suns"), ["suns"])

@@ -7,13 +7,13 @@
 #include <cstring>
 #include <span>
 
-/// Entry point for libFuzzer, and for the replay of the corpus in other builds (replay_main.cpp).
+/// Entry point for libFuzzer, and in other builds for the replay of the corpus (replay_main.cpp).
 extern "C" int LLVMFuzzerTestOneInput(  // NOLINT(readability-identifier-naming): libFuzzer's name
     const std::uint8_t* data, std::size_t size);
 
 namespace penumbra::fuzz {
 
-/// Takes values off a fuzzer's input; zeros once it has run out.
+/// Takes values from a fuzzer's input, and zeros after its end.
 class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> data) : data_(data) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edge graph, silhouettes and diagnosis of any small soup, against definitions read off their headers by brute force.
-// On a lattice of small integers, stretched by a power of two from one end of double's range to the other, signs are
-// those of integers; on wild coordinates only what needs no sign is checked.
+// Fuzzes edge graph, silhouettes and diagnosis of any small soup, and compares them with definitions in their headers,
+// applied by brute force. On a lattice of small integers, scaled by any power of two in double's range, signs are those
+// of integers; with arbitrary coordinates only results without signs are checked.
 #include "base/assert.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/silhouettes.hpp"
@@ -23,7 +23,7 @@ using Point = std::array<std::int64_t, 3>;
 struct Soup {
   bool lattice = true;
   double scale = 1;           ///< a power of two
-  std::vector<Point> points;  ///< lattice only: positions = scale · points
+  std::vector<Point> points;  ///< on a lattice only: positions = scale · points
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;
   [[nodiscard]] MeshView view() const { return {positions, triangles}; }
@@ -52,7 +52,7 @@ Soup make_soup(Bytes& bytes) {
     if (soup.lattice) {
       soup.points.push_back(lattice_point(bytes));
       soup.positions.push_back(soup.placed(soup.points.back()));
-      if ((head & 3) == 2) soup.positions.back() = -soup.positions.back();  // with −0 for 0
+      if ((head & 3) == 2) soup.positions.back() = -soup.positions.back();  // then zeros are −0
     } else {
       const double x = wild_number(bytes), y = wild_number(bytes), z = wild_number(bytes);
       soup.positions.emplace_back(x, y, z);
@@ -127,7 +127,7 @@ void check_graph(const Soup& soup, const EdgeGraph& graph) {
   }
 }
 
-/// k_e(p) by its definition, for every edge; triangles wound counter-clockwise as seen from p.
+/// Returns k_e(p) by its definition, for every edge; triangles are wound counter-clockwise as seen from p.
 std::vector<int> multiplicities(const Soup& soup, const EdgeGraph& graph, const Point& p) {
   std::vector<int> k(graph.edges.size(), 0);
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
@@ -144,7 +144,7 @@ void check_silhouettes(const Soup& soup, const EdgeGraph& graph, Bytes& bytes) {
   std::vector<glm::dvec3> corners;
   for (Point& p : hull) {
     p = lattice_point(bytes);
-    for (std::int64_t& x : p) x = 4 * (x - 2);  // even: the middle of two is a lattice point, too
+    for (std::int64_t& x : p) x = 4 * (x - 2);  // even, so that the middle of two points is a lattice point, too
     corners.push_back(soup.placed(p));
   }
   const std::vector<std::uint32_t> possible = possible_silhouette_edges(soup.view(), graph, corners);
@@ -153,7 +153,7 @@ void check_silhouettes(const Soup& soup, const EdgeGraph& graph, Bytes& bytes) {
       const Point p = {(hull[i][0] + hull[j][0]) / 2, (hull[i][1] + hull[j][1]) / 2, (hull[i][2] + hull[j][2]) / 2};
       const std::vector<int> k = multiplicities(soup, graph, p);
       std::vector<SilhouetteEdge> known;
-      std::map<std::uint32_t, int> flow;  // into each vertex
+      std::map<std::uint32_t, int> flow;  // flow into each vertex
       for (std::uint32_t e = 0; e < k.size(); ++e) {
         if (k[e] == 0) continue;
         known.push_back({e, k[e]});
@@ -168,7 +168,7 @@ void check_silhouettes(const Soup& soup, const EdgeGraph& graph, Bytes& bytes) {
   }
 }
 
-/// The signed boundary, cut at every vertex that lies on it.
+/// Returns whether the signed boundary, cut at every vertex that lies on it, cancels.
 bool closed_by_brute_force(const Soup& soup, const EdgeGraph& graph) {
   std::map<Edge, int> boundary;
   for (const Triangle& triangle : soup.triangles) {
@@ -209,7 +209,7 @@ void check_counts(const Soup& soup, const EdgeGraph& graph, const Diagnosis& dia
     non_manifold += around.size() > 2;
     inconsistent += around.size() == 2 && around[0].reversed == around[1].reversed;
   }
-  std::map<std::set<std::uint32_t>, std::array<std::uint64_t, 2>> faces;  // how often wound one way, and the other
+  std::map<std::set<std::uint32_t>, std::array<std::uint64_t, 2>> faces;  // how often wound one way and the other way
   std::set<std::uint32_t> used;
   for (std::uint32_t t = 0; t < soup.triangles.size(); ++t) {
     Triangle c = graph.corners(soup.triangles[t]);
@@ -239,8 +239,8 @@ void check_counts(const Soup& soup, const EdgeGraph& graph, const Diagnosis& dia
   agree("closed as wound", diagnosis.closed_as_wound, closed_by_brute_force(soup, graph));
 }
 
-/// The counts that must not change with the order of triangles, with their first corners, or when all triangles are
-/// turned over.
+/// Returns the counts that must not change with the order of triangles, with their first corners, or when all triangles
+/// are turned over.
 std::array<std::uint64_t, 14> shape_of(const Diagnosis& d) {
   return {d.vertices,
           d.components,
@@ -264,7 +264,7 @@ void check_turned(const Soup& soup, const Diagnosis& diagnosis) {
   for (std::size_t t = 0; t < turned.triangles.size(); ++t) {
     Triangle& c = turned.triangles[t];
     std::rotate(c.begin(), c.begin() + static_cast<long>(t % 3), c.end());
-    std::swap(c[0], c[2]);  // all of them: neighbours that agreed still do, and others still do not
+    std::swap(c[0], c[2]);  // all of them: neighbours wound alike stay so, and no others become so
   }
   const Diagnosis other = diagnose(turned.view());
   PENUMBRA_ASSERT(shape_of(other) == shape_of(diagnosis), "turned triangles have another diagnosis");

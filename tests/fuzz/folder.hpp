@@ -13,7 +13,7 @@
 
 namespace penumbra::fuzz {
 
-/// A new, empty folder for the file of a fuzz target: other files that it refers to do not exist.
+/// A new, empty folder for the file of a fuzz target, so that files to which it refers do not exist.
 class Folder {
  public:
   Folder() : path_((std::filesystem::temp_directory_path() / "penumbra-fuzz-XXXXXX").string()) {

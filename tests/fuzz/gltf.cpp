@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The glTF reader on any file, as a scene and as a mesh: an InputError, or a scene that passes the checks of the
-// importer's answer, and the same triangles both times.
+// Fuzzes the glTF reader with any file, as a scene and as a mesh: the result is an InputError, or a scene that passes
+// the checks of the importer's answer, with the same triangles both times.
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "mesh/import_wire.hpp"
@@ -18,13 +18,13 @@ namespace {
 
 using namespace penumbra;
 
-/// Returns the result; nothing if the file is refused.
+/// Returns the result, or nullopt if the file is refused.
 template <typename Read>
 auto attempt(Read read) -> std::optional<decltype(read())> {
   try {
     return read();
   } catch (const InputError&) {
-  } catch (const std::bad_alloc&) {  // the helper answers with these, too
+  } catch (const std::bad_alloc&) {  // the helper answers to these exceptions, too
   } catch (const std::length_error&) {
   }
   return std::nullopt;
@@ -50,13 +50,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     scenes::put_scene(writer, *scene);
     const std::vector<std::byte> bytes = writer.bytes();
     mesh::WireReader reader(bytes);
-    const scenes::Scene again = scenes::get_scene(reader);  // throws if a promise is broken
+    const scenes::Scene again = scenes::get_scene(reader);  // throws if a promise of the reader is broken
     PENUMBRA_ASSERT(again.soup.triangles == scene->soup.triangles, "{} triangles became {}",
                     scene->soup.triangles.size(), again.soup.triangles.size());
   }
   const auto mesh = attempt([&] { return penumbra::import::import_gltf_mesh(input, {.lenient = true}); });
   if (mesh) fuzz::check_imported(*mesh);
-  // A scene may be refused for its cameras and lights alone, but what can be read as a scene can be read as a mesh.
+  // A scene may be refused only for its cameras and lights; but a file that can be read as a scene can be read as a
+  // mesh.
   PENUMBRA_ASSERT(mesh || !scene, "read as a scene, but not as a mesh");
   if (scene && mesh) {
     PENUMBRA_ASSERT(mesh->soup.triangles == scene->soup.triangles, "{} triangles as a mesh, {} as a scene",

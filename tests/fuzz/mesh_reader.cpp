@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuzzes what runs inside the import helper: the first byte chooses the format, the rest is the file's content. Our own
-// code reads all of these formats; of COLLADA, the part before Assimp.
+// Fuzzes the readers of the import helper: the first byte chooses the format, the rest is the file's content. Our own
+// code reads all of these formats, but of COLLADA only the part before Assimp.
 #include "base/error.hpp"
 #include "import/audit_collada.hpp"
 #include "import/read.hpp"
@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     penumbra::fuzz::check_imported(penumbra::import::read_mesh(penumbra::mesh::open_input(file)));
   } catch (const penumbra::InputError&) {
-  } catch (const std::bad_alloc&) {  // the helper answers with these, too
+  } catch (const std::bad_alloc&) {  // the helper answers to these exceptions, too
   } catch (const std::length_error&) {
   }
   return 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The OFF reader on any text: an InputError, or a mesh in which everything is in range.
+// Fuzzes the OFF reader with any text: the result is an InputError, or a mesh in which everything is in range.
 #include "base/error.hpp"
 #include "import/off.hpp"
 #include "tests/fuzz/bytes.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of `serve` and of the live view from any bytes: one that is refused leaves the state as it was, and a state
-// can always be told.
+// Fuzzes messages of `serve` and of the live view with any bytes: a refused message leaves the state as it was, and a
+// state can always be written as a message.
 #include "app/serve/message_pipe.hpp"
 #include "app/view/live_state.hpp"
 #include "base/assert.hpp"

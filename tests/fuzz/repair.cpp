@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repair of any small soup, with CGAL's own checks on: it ends, what comes out is a soup, and triangles without area
-// are gone or mentioned.
+// Fuzzes repair of any small soup, with CGAL's own checks enabled: it ends, the result is a soup, and triangles without
+// area are removed or mentioned.
 #include "base/assert.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "repair/run_repair.hpp"
@@ -13,7 +13,7 @@ namespace {
 using namespace penumbra::mesh;
 using penumbra::fuzz::Bytes;
 
-/// Corners on a lattice of four steps a side, so that much coincides; a few moved off it.
+/// Makes a soup with corners on a lattice of four steps along each side, so that many coincide; a few are moved off it.
 TriangleSoup make_soup(Bytes& bytes) {
   TriangleSoup soup;
   const std::uint32_t positions = 3 + bytes.take<std::uint8_t>() % 10u;

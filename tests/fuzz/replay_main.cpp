@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a fuzz target on files and on the files of folders: what libFuzzer does with a corpus, with any compiler.
+// Runs a fuzz target on files and on the files in folders, as libFuzzer does with a corpus, but with any compiler.
 #include "tests/fuzz/bytes.hpp"
 
 #include <algorithm>
@@ -20,11 +20,11 @@ int main(int argc, char** argv) {
   }
   std::ranges::sort(files);
   for (const std::filesystem::path& file : files) {
-    std::fprintf(stderr, "%s\n", file.c_str());  // before, not after: a crash must have a name
+    std::fprintf(stderr, "%s\n", file.c_str());  // before the run: a crash must have a name
     std::ifstream stream(file, std::ios::binary);
     const std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
     LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
   }
   std::fprintf(stderr, "%zu files replayed\n", files.size());
-  return files.empty() ? 1 : 0;  // a replay of nothing proves nothing
+  return files.empty() ? 1 : 0;  // a replay of no files proves nothing
 }

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# run.sh SOURCE BUILD TARGET SECONDS: runs a fuzz target with libFuzzer. Builds the preset `fuzz` in BUILD/fuzz, unless BUILD
-# is such a build. Inputs that fail are written to BUILD/fuzz_findings, new ones of the corpus to BUILD/fuzz_corpus.
+# run.sh SOURCE BUILD TARGET SECONDS: runs a fuzz target with libFuzzer. Builds the preset `fuzz` in BUILD/fuzz, unless
+# BUILD is already such a build. Failing inputs are written to BUILD/fuzz_findings, new corpus inputs to
+# BUILD/fuzz_corpus.
 set -euo pipefail
 source=$1 build=$2 target=$3 seconds=$4
 if ! grep -q '^PENUMBRA_FUZZ:BOOL=ON' "$build/CMakeCache.txt"; then

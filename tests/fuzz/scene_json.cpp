@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader of penumbra-scene/1 on any text: an InputError, or a scene that is whole. No file but the package
-// manager's lists is read: the scene's folder does not exist, and there is no import helper.
+// Fuzzes the reader of penumbra-scene/1 with any text: the result is an InputError, or a complete scene. No file except
+// the package manager's lists is read: the scene's folder does not exist, and there is no import helper.
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "scenes/formats/checks.hpp"
@@ -17,9 +17,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Generated shapes may have 50 million triangles; the reader is what is tested here, so only small ones are let in.
+/// Returns whether generated shapes are small. They may have 50 million triangles, but here only the reader is tested.
 bool is_small(const json& value, int depth = 0) {
-  if (depth > 64) return false;  // the reader refuses this itself, but not before the walk would have overflowed
+  if (depth > 64) return false;  // the reader refuses such depths, too, but this walk would overflow the stack before
   if (value.is_number()) return std::abs(value.get<double>()) < 40;
   if (!value.is_structured()) return true;
   if (value.is_object() && value.contains("subdivisions")) {

@@ -28,7 +28,7 @@ class Reader {
     add_object(made.scene, triangles(2 + below(14)));
     if (below(2) == 0) {
       add_object(made.scene, triangles(1 + below(3)));
-      // Casts none, or is the light's body, which is transparent to its own light.
+      // This object casts no shadow, or is the light's body, which does not hide its own light.
       if (below(2) == 0) {
         made.scene.objects.back().casts_shadow = false;
       } else {
@@ -55,10 +55,10 @@ class Reader {
     switch (below(10)) {
       case 0:
         return at * kSizes[below(kSizes.size())];
-      case 1:  // an ulp off
+      case 1:  // an ulp off the lattice
         at[static_cast<int>(below(3))] += (below(2) == 0 ? 1 : -1) * 0x1p-22;
         return at;
-      case 2:  // in the light's plane, on it or beside it
+      case 2:  // in the light's plane, on the light or outside it
         return center_ + 0.5 * (static_cast<double>(below(9)) - 4) * u_ +
                0.5 * (static_cast<double>(below(9)) - 4) * v_;
       case 3:
@@ -69,7 +69,7 @@ class Reader {
   }
 
   visibility::SampleRequest read_light(scenes::Scene& scene) {
-    // Few: shaders are compiled for each.
+    // Only three layouts, because shaders are compiled for each.
     static constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 3> kLayouts = {{{3, 3}, {1, 5}, {5, 4}}};
     center_ = lattice_point();
     if (below(3) != 0) center_.y += range_ + 1;
@@ -79,7 +79,7 @@ class Reader {
       u_ = {1, 0, 0};
       v_ = {0, 0, 1};
     }
-    if (below(8) == 0) {  // what no float holds
+    if (below(8) == 0) {  // coordinates that are not exact in float
       u_ /= 3.0;
       v_ /= 7.0;
     }
@@ -97,7 +97,7 @@ class Reader {
     return {rows * columns, rows, columns, pattern, 0};
   }
 
-  /// Each triangle has some relation to an earlier one, or none.
+  /// Returns triangles, each with some relation to an earlier one, or with none.
   std::vector<Corners> triangles(std::uint32_t count) {
     std::vector<Corners> soup;
     while (soup.size() < count) {
@@ -118,7 +118,7 @@ class Reader {
           now = {old[1], old[2], old[1] + old[2] - old[0]};  // completes a parallelogram
           break;
         case 5:
-          now[2] = below(2) == 0 ? now[0] : 2.0 * now[1] - now[0];  // no area
+          now[2] = below(2) == 0 ? now[0] : 2.0 * now[1] - now[0];  // without area
           break;
         case 6:
           now[2] = now[0] + now[2] * 0x1p-20;  // a needle

@@ -12,7 +12,7 @@
 
 namespace penumbra::fuzz {
 
-/// A few triangles, a light among them, and view samples on them.
+/// A few triangles, a light among them, and view samples on the triangles.
 struct SoupCase {
   scenes::Scene scene;
   visibility::SceneFloats floats;
@@ -20,9 +20,10 @@ struct SoupCase {
   visibility::ViewSamples samples;
 };
 
-/// Reads a case out of any bytes, so that what rounding hides elsewhere is normal: corners on a small lattice, an ulp
-/// beside it or many powers of two smaller; doubles, shared edges, coplanar neighbours, needles, triangles without area
-/// or in the light's plane; view samples on corners and edges. Nothing if no scene can be made of them.
+/// Makes a case from any bytes in which cases that rounding hides elsewhere are normal: corners on a small lattice, an
+/// ulp off it, or many powers of two smaller; doubles, shared edges, coplanar neighbours, needles, triangles without
+/// area or in the light's plane; view samples on corners and edges. Returns nullopt if no scene can be made of the
+/// bytes.
 std::optional<SoupCase> read_soup_case(std::span<const std::uint8_t> bytes);
 
 }  // namespace penumbra::fuzz

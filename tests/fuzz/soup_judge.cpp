@@ -19,7 +19,8 @@ int sign_of_determinant(const Point& a, const Point& b, const Point& c) {
   return sgn(value);
 }
 
-/// Returns the side of the plane through a, b, c that the point is on: positive where they run counter-clockwise.
+/// Returns the side of the plane through a, b, c on which the point is: positive if they run counter-clockwise as seen
+/// from it.
 int side(const std::array<Point, 3>& abc, const Point& x) {
   return sign_of_determinant(minus(abc[1], abc[0]), minus(abc[2], abc[0]), minus(x, abc[0]));
 }
@@ -30,7 +31,7 @@ bool has_area(const std::array<Point, 3>& abc) {
          sgn(mpz_class(u[0] * v[1] - u[1] * v[0])) != 0;
 }
 
-/// The exponent of a float's last binary digit; large for 0.
+/// Returns the exponent of a float's last binary digit; large for 0.
 int last_digit(float x) {
   if (x == 0) return 1000;
   int exponent = 0;
@@ -96,7 +97,7 @@ bool SoupJudge::sees(std::size_t pixel, std::uint32_t light_sample) const {
   const Point p = exactly(samples.p[pixel]);
   const Point& l = light_points_[light_sample];
   const auto carrier = corners_of(static_cast<std::uint32_t>(samples.triangle[pixel]));
-  // (1) l strictly on the viewer's side, (2) p strictly on an emitting side.
+  // The pair's conditions: (1) l is strictly on the viewer's side, (2) p is strictly on an emitting side.
   if (side(carrier, l) * samples.facing[pixel] <= 0) return false;
   const int front = sign_of_determinant(u_, v_, minus(p, center_));
   if (case_.light.two_sided ? front == 0 : front <= 0) return false;
@@ -104,7 +105,7 @@ bool SoupJudge::sees(std::size_t pixel, std::uint32_t light_sample) const {
   for (const Caster& caster : casters_) {
     const std::array<Point, 3>& abc = caster.corners;
     const int side_of_p = side(abc, p), side_of_l = caster.side_of_light_sample[light_sample];
-    if (side_of_p * side_of_l >= 0) continue;  // one side, or the plane contains p or l
+    if (side_of_p * side_of_l >= 0) continue;  // both on one side, or the plane contains p or l
     const bool coplanar = std::ranges::all_of(abc, [&](const Point& x) { return side(carrier, x) == 0; });
     if (coplanar) continue;
     const int first = edge_sign(p, l, abc[0], abc[1]);

@@ -12,17 +12,17 @@
 
 namespace penumbra::fuzz {
 
-/// The truth of every pair of a case, from its definition and the stored floats alone, in integers of any size. It
-/// shares no arithmetic with the program: the methods and visibility::decide_pair are what it judges.
+/// Computes the truth of every pair of a case, from its definition and the stored floats alone, in integers of any
+/// size. It shares no arithmetic with the program, so that it can check the methods and visibility::decide_pair.
 class SoupJudge {
  public:
   explicit SoupJudge(const SoupCase& judged);
 
-  /// Returns whether the view sample of this pixel, which is no background, sees the light sample.
+  /// Returns whether the view sample of this pixel, which must not be background, sees the light sample.
   [[nodiscard]] bool sees(std::size_t pixel, std::uint32_t light_sample) const;
 
  private:
-  /// Coordinates times one power of two that makes all of a case integers.
+  /// Coordinates, multiplied by one power of two that makes all of a case's coordinates integers.
   using Point = std::array<mpz_class, 3>;
   struct Caster {
     std::array<Point, 3> corners;
@@ -31,7 +31,7 @@ class SoupJudge {
 
   [[nodiscard]] Point exactly(const glm::vec3& x) const;
   [[nodiscard]] std::array<Point, 3> corners_of(std::uint32_t triangle) const;
-  /// The sign of (p, l; a b), zeros read at l + ε·u + ε²·v.
+  /// Returns the sign of (p, l; a b); zeros are decided with l moved to l + ε·u + ε²·v.
   [[nodiscard]] int edge_sign(const Point& p, const Point& l, const Point& a, const Point& b) const;
 
   const SoupCase& case_;

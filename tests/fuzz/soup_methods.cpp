@@ -125,7 +125,7 @@ SoupFindings SoupMethods::check(const SoupCase& judged) {
     if (!masks) continue;
     for_each_pair([&](std::size_t pixel, std::uint32_t j) {
       if (!visibility::is_receiver(judged.floats, judged.light, judged.samples, pixel))
-        return;  // lit, whatever the truth
+        return;  // such a surface is lit, whatever the truth
       compare(variant.name, pixel, j, bit(*masks, pixel, j));
     });
   }

@@ -16,21 +16,21 @@ namespace penumbra::fuzz {
 
 /// Findings of one case, or of many.
 struct SoupFindings {
-  std::uint64_t cases = 0, pairs = 0, visible = 0;  ///< pairs: of each case, by the judge
+  std::uint64_t cases = 0, pairs = 0, visible = 0;  ///< pairs: those of each case, as the judge decides them
   std::uint64_t answers = 0;                        ///< pairs that a method answered
-  std::uint64_t refusals = 0;                       ///< answers of a method that float32 does not span the case for
+  std::uint64_t refusals = 0;  ///< cases that a method refused because float32 cannot represent them
   std::uint64_t wrong = 0;
   std::string first_wrong;  ///< which method, and the pair in numbers
 
   void operator+=(const SoupFindings& other);
 };
 
-/// Every method that promises all bits to be the truth of their pairs, in each of its variants, on one device.
+/// Every method that promises the truth of its pairs in all bits, in each of its variants, on one device.
 class SoupMethods {
  public:
   explicit SoupMethods(const render::Device& device) : device_(&device) {}
 
-  /// Holds every bit of every method, and visibility::decide_pair, against SoupJudge.
+  /// Compares every bit of every method, and visibility::decide_pair, with SoupJudge.
   SoupFindings check(const SoupCase& judged);
 
  private:
@@ -38,8 +38,8 @@ class SoupMethods {
     std::string name;
     std::unique_ptr<visibility::Method> method;
   };
-  /// The variants for this number and kind of light samples: a method that is given other light samples compiles its
-  /// shaders again.
+  /// Returns the variants for this number and kind of light samples, because a method that gets other light samples
+  /// compiles its shaders again.
   std::vector<Variant>& variants_for(const visibility::Light& light);
 
   const render::Device* device_;

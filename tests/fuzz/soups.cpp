@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small adversarial scenes: every bit of every method that promises the truth, against a judge that shares no code with
-// them.
+// Fuzzes small adversarial scenes: compares every bit of every method that promises the truth with a judge that shares
+// no code with them.
 #include "tests/fuzz/bytes.hpp"
 #include "tests/fuzz/soup_methods.hpp"
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Targets of requests for the live view's 3D view, from any bytes: numbers are in their ranges, or the request is
-// refused.
+// Fuzzes requests for the live view's 3D view with any bytes: numbers are in their ranges, or the request is refused.
 #include "app/view/space_view.hpp"
 #include "base/assert.hpp"
 #include "base/error.hpp"

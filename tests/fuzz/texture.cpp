@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures on lights, PNG or OpenEXR, as the import helper reads them: an Error, or as many texels as it says.
+// Fuzzes pictures on lights, PNG or OpenEXR, as the import helper reads them: the result is an Error, or as many texels
+// as it declares.
 #include "base/assert.hpp"
 #include "base/error.hpp"
 #include "import/texture_file.hpp"

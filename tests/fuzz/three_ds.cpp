@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// 3D Studio files as the import helper reads them: by Assimp, which is the system's and not instrumented, and from
-// there by our code. Whatever Assimp makes of a damaged file, a mesh that is let through keeps its promises.
+// Fuzzes 3D Studio files as the import helper reads them: first by Assimp, which is the system's and not instrumented,
+// then by our code. Whatever Assimp makes of a damaged file, an accepted mesh keeps its promises.
 #include "base/error.hpp"
 #include "import/read.hpp"
 #include "tests/fuzz/bytes.hpp"
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     penumbra::fuzz::check_imported(penumbra::import::read_mesh(penumbra::mesh::open_input(file)));
   } catch (const penumbra::InputError&) {
-  } catch (const std::bad_alloc&) {  // the helper answers with these, too
+  } catch (const std::bad_alloc&) {  // the helper answers to these exceptions, too
   } catch (const std::length_error&) {
   }
   return 0;

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# consumer.sh BUILD SOURCE WORK: installs the build into WORK, builds a project outside the tree against it by find_package and by
-# pkg-config, and runs both. The library must show nothing but its interface.
+# consumer.sh BUILD SOURCE WORK: installs the build into WORK, builds a project outside the tree with it, by
+# find_package and by pkg-config, and runs both. The library must export nothing but its interface.
 set -euo pipefail
 build=$1 source=$2 work=$3
 rm -rf -- "$work"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Progress functions of the calling program: what they are told, and that they end every call that may take long.
+// Progress functions of the calling program: the values that they get, and that they can end every call that may take
+// long.
 
 #include "tests/cli/program.hpp"
 
@@ -58,12 +59,12 @@ TEST_F(LibraryEnds, ProgressEndsACall) {
   EXPECT_EQ(beauty(), before);
   renderer.scene().set_light("key", LightOptions{.radiance = {1, 1, 1}});
   renderer.scene().set_light("key", Rectangle{.center = {0, 4, 0}, .half_u = {0.5, 0, 0}, .half_v = {0, 0, -0.5}});
-  static_cast<void>(renderer.render());  // shines up: nothing is lit
+  static_cast<void>(renderer.render());  // the light shines upward: nothing is lit
   EXPECT_THAT(messages, testing::Contains(HasSubstr("no visible point")));
 }
 
-/// The progress function is asked several times while one method evaluates one light, and its end is heard there; the
-/// picture is the one without it.
+/// The progress function is called several times while one method evaluates one light, and its request to end takes
+/// effect there; otherwise the picture is the same as without it.
 TEST_F(LibraryEnds, AMethodIsHeardBetweenBands) {
   const RenderOptions large{.width = 512, .height = 512, .method = "edge-scatter", .light_samples = 16};
   int within = 0, most = std::numeric_limits<int>::max();
@@ -81,7 +82,7 @@ TEST_F(LibraryEnds, AMethodIsHeardBetweenBands) {
   EXPECT_THROW(renderer.render(large), Cancelled);
   EXPECT_EQ(within, 1);
 
-  // 1,024 rays a pixel are the reference of comparisons: sixteen rows at once here.
+  // Comparisons take 1,024 rays for each pixel as reference: here sixteen rows at once.
   std::set<double> shares;
   const auto note = [&](std::string_view stage, double done) {
     if (stage.starts_with("raytrace")) shares.insert(done);
@@ -130,7 +131,7 @@ TEST_F(LibraryEnds, Wedges) {
   EXPECT_EQ(told.size(), 3U);
 }
 
-/// A file that another process reads for minutes: the call ends at once, and that process with it.
+/// Another process would read the file for minutes: the call ends at once, and so does that process.
 TEST_F(LibraryEnds, WhileAnotherProcessReads) {
   const std::string process = path("process");
   write("slow", "#!/bin/sh\necho $$ > " + process + "\nexec sleep 100\n");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Instances of the library's scenes: the same numbers with copies and without, as the program's, and after changes.
+// Instances in the library's scenes: the same numbers with copies and without, the same as the program's, and after
+// changes.
 
 #include "tests/cli/program.hpp"
 #include "tests/library/picture_bytes.hpp"
@@ -21,7 +22,8 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// All numbers of a picture with one light that are exact; the last bit of exact areas' form factors is not.
+/// Returns all numbers of a picture with one light that must be exact; the last bit of exact areas' form factors need
+/// not be.
 std::string exact_bytes(const Picture& picture) {
   return bytes_of(picture.alpha()) + bytes_of(picture.positions()) + bytes_of(picture.normals()) +
          bytes_of(picture.depth()) + bytes_of(picture.ids()) + bytes_of(picture.visibility(0)) +
@@ -34,7 +36,7 @@ std::vector<Vector> tent(double height) {
   return {{-0.3, 0, -0.2}, {0.3, 0, -0.3}, {0.35, 0, 0.3}, {-0.3, 0.1, 0.3}, {0.1, height, 0}};
 }
 
-/// Turned about Y, mirrored if `i` is odd, and away.
+/// Returns a matrix that turns about Y, mirrors if `i` is odd, and moves.
 Matrix place(int i) {
   const int row = i / 4;
   const double turn = 0.7 * i, c = std::cos(turn), s = std::sin(turn), flip = i % 2 == 0 ? 1 : -1;
@@ -54,7 +56,7 @@ Matrix product(const Matrix& a, const Matrix& b) {
 constexpr std::array<std::array<std::uint32_t, 3>, 2> kTwo = {{{0, 1, 2}, {0, 2, 3}}};
 constexpr int kTents = 9;
 
-/// Tents on a floor, before a wall, under a lamp.
+/// Returns tents on a floor, in front of a wall, under a lamp.
 Scene camp(double height, int tents = kTents) {
   Scene scene;
   const std::array<Vector, 4> floor = {{{-3, 0, 3}, {3, 0, 3}, {3, 0, -3}, {-3, 0, -3}}},
@@ -137,7 +139,7 @@ TEST_F(LibraryInstances, MoveAndLeaveTheMeshesTreesAlone) {
   EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(moved));
   renderer.scene().set_transform(InstanceId{mesh, 4}, place(4));
   EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(first)) << "the origin stays where it was";
-  // Positions are the mesh's own, of all instances; only its tree is made again.
+  // Positions belong to the mesh, and so to all instances; only its tree is made again.
   renderer.scene().set_positions(mesh, tent(1.1));
   const Picture higher = renderer.render(kShared);
   EXPECT_EQ(built(higher), 1);
@@ -153,7 +155,7 @@ TEST_F(LibraryInstances, ChangeTogether) {
   EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), high);
   scene.set_positions(mesh, tent(0.8));
   EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), exact_bytes(Renderer(camp(0.8)).render(kShared)));
-  // A matrix of the mesh moves them all: exact in the numbers chosen, as if each had been moved.
+  // A matrix for the mesh moves all instances: exactly, with the numbers chosen, as if each had been moved.
   const Matrix up = {1, 0, 0, 0, 0, 1, 0, 0.25, 0, 0, 1, 0, 0, 0, 0, 1};
   Scene each = scene, all = scene;
   for (int i = 0; i < kTents; ++i)
@@ -181,7 +183,7 @@ TEST_F(LibraryInstances, RefuseWhatCannotBe) {
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("some"))), UsageError);
   EXPECT_THROW(static_cast<void>(Renderer(scene).render(with("shared", "vssm"))), UsageError);
   EXPECT_EQ(exact_bytes(Renderer(scene).render(kShared)), before);
-  // Methods that look at more than what lies between p and the light get copies.
+  // Methods that need more than the triangles between p and the light get copies.
   EXPECT_NO_THROW(static_cast<void>(Renderer(scene).render(with("", "vssm"))));
   EXPECT_THAT(wedges_json(scene, {.light = "key"}), HasSubstr("key"));
 }

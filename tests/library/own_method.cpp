@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods of the calling program: what they are given, and what becomes of their answers.
+// Methods of the calling program: the data that they get, and what is done with their answers.
 
 #include <penumbra/penumbra.hpp>
 
@@ -17,7 +17,7 @@ namespace {
 using testing::Each;
 using testing::HasSubstr;
 
-/// A floor of two triangles under a rectangle light, and a mesh that casts no shadow between them.
+/// Returns a floor of two triangles under a rectangle light, and between them a mesh that casts no shadow.
 Scene floor_under_light() {
   Scene scene;
   const std::array<Vector, 4> corners = {{{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}}};
@@ -31,7 +31,7 @@ Scene floor_under_light() {
   return scene;
 }
 
-/// Keeps what it was given; V is a number.
+/// Checks and keeps the data that it gets; V is constant.
 class Constant final : public OwnMethod {
  public:
   explicit Constant(float value) : value_(value) {}
@@ -57,7 +57,7 @@ class Constant final : public OwnMethod {
   MethodView view_;
 };
 
-/// Sets every bit there is room for, or every second.
+/// Sets every bit of its masks, or every second one.
 class Striped final : public OwnMethod {
  public:
   explicit Striped(std::uint32_t pattern) : pattern_(pattern) {}
@@ -74,7 +74,7 @@ class Striped final : public OwnMethod {
   std::uint32_t pattern_, words_ = 0;
 };
 
-/// Adds the method once a process, since methods stay.
+/// Adds the methods once in each process, since added methods remain.
 void add_once() {
   static const bool added = [] {
     add_method(

@@ -6,7 +6,7 @@
 
 namespace penumbra::tests {
 
-/// Returns numbers of a picture as text of bytes that can be compared.
+/// Returns numbers of a picture as a string of bytes that can be compared.
 template <typename Value>
 std::string bytes_of(std::span<const Value> values) {
   return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};

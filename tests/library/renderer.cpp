@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library against the program: the same numbers, kept from call to call, from several threads, and after errors.
+// Compares the library with the program: the same numbers, also with kept data, from several threads, and after errors.
 
 #include "base/exr.hpp"
 #include "tests/cli/program.hpp"
@@ -114,7 +114,7 @@ TEST_F(Library, MasksAreTheBitsOfTheProgram) {
   ASSERT_EQ(picture.words_per_mask(), words);
   EXPECT_EQ(picture.light_samples(), 100U);
   ASSERT_EQ(picture.masks().size(), pixels * words);
-  // Each pixel has p, its triangle and its words, after the first line, three doubles and the light points.
+  // After the first line, three doubles and the light points, each pixel has p, its triangle and its words.
   std::size_t at = bits.find('\n') + 1 + 3 * sizeof(double) + 100 * sizeof(Picture::Float3);
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     at += 12 + 4;
@@ -125,7 +125,7 @@ TEST_F(Library, MasksAreTheBitsOfTheProgram) {
   EXPECT_THAT(renderer.render({.method = "edge-scatter", .light_samples = 100, .masks = false}).masks(), IsEmpty());
 }
 
-/// The renderer's kept data must not show: every picture is the one of a renderer that was made for it.
+/// Data that the renderer keeps must not show: every picture equals that of a new renderer.
 TEST_F(Library, KeepsNothingThatChanged) {
   Renderer renderer(Scene::load(scene_));
   const auto expect_fresh = [&](const RenderOptions& options, const char* what) {
@@ -192,7 +192,7 @@ TEST_F(Library, StaysUsableAfterErrors) {
   EXPECT_THROW(Renderer(Scene()).render(), InputError);
 }
 
-/// Many pictures on two threads at once, each by methods that keep buffers of threads, are those that each makes alone.
+/// Many pictures made on two threads at once, with methods that keep buffers for each thread, equal those made alone.
 TEST_F(Library, RenderersOnTwoThreadsDoNotMeet) {
   const auto pictures = [this](const char* method, bool sphere) {
     Renderer renderer(Scene::load(scene_));
@@ -250,7 +250,7 @@ TEST_F(Library, MeshesMoveFromWhereTheyWere) {
   EXPECT_EQ(all_bytes(Renderer(scene).render(options)), back);
 }
 
-/// Vertices that no triangle uses are left out with a warning, as of a file, and positions are given as before.
+/// A scene that was moved from is empty, and can be filled again.
 TEST_F(Library, ScenesThatWereMovedFromAreAsNew) {
   const std::array<Vector, 3> corners = {{{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}};
   const std::array<std::array<std::uint32_t, 3>, 1> face = {{{0, 1, 2}}};
@@ -285,7 +285,7 @@ TEST_F(Library, UnusedVerticesAreNoPartOfAScene) {
   EXPECT_TRUE(all_bytes(Renderer(loose).render(options)) == all_bytes(Renderer(tight).render(options)));
 }
 
-/// A mesh with vertices' normals that was turned and then given positions has the normals that it was read with.
+/// If a mesh with vertex normals is transformed and then given its positions again, it has the normals that were read.
 TEST_F(Library, PositionsTakeTheTransformBack) {
   // Three positions, then three normals, in float.
   write("roof.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
@@ -310,7 +310,8 @@ TEST_F(Library, PositionsTakeTheTransformBack) {
   EXPECT_TRUE(all_bytes(Renderer(scene).render(options)) == before);
 }
 
-/// Options that a method does not have are said before anything is dropped: the next picture keeps its hierarchies.
+/// Options that a method does not have are reported before anything is dropped: the next picture uses the kept
+/// hierarchies.
 TEST_F(Library, WrongOptionsDropNothing) {
   Renderer renderer(Scene::load(scene_));
   const RenderOptions options{.method = "edge-scatter", .light_samples = 16};
@@ -340,7 +341,7 @@ TEST_F(Library, BuildsWhatAFileSays) {
 }
 
 TEST_F(Library, SaysWhatTheProgramSays) {
-  // Methods that tests of this process added come last.
+  // Methods that tests in this process added come last.
   const auto program = nlohmann::ordered_json::parse(run({"methods", "--json"}).out);
   auto library = nlohmann::ordered_json::parse(methods_json());
   ASSERT_GE(library.at("methods").size(), program.at("methods").size());

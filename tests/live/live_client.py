@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A bare client of `penumbra view`, with Python's standard library alone: HTTP, WebSocket (RFC 6455), the messages of
-docs/view.md, and just as much PNG as they need."""
+"""A minimal client of `penumbra view`, with only Python's standard library: HTTP, WebSocket (RFC 6455), the messages of
+docs/view.md, and as much PNG as they need."""
 import base64
 import http.client
 import json
@@ -32,7 +32,7 @@ class Closed(Exception):
 
 
 class Server:
-    """`penumbra view SCENE`, for as long as the `with` block."""
+    """Runs `penumbra view SCENE` for the duration of the `with` block."""
 
     def __init__(self, program, scene, *arguments):
         self.command = [program, "view", str(scene), "--no-browser", *map(str, arguments)]
@@ -50,7 +50,8 @@ class Server:
         self.process.wait()
 
     def get(self, path="/", token=None, method="GET", parameters=None, **headers):
-        """Status, headers and body of a request; `token` "" leaves it out, and then `parameters`, too."""
+        """Returns status, headers and body of a request; an empty `token` leaves the token out, and then `parameters`,
+        too."""
         connection = http.client.HTTPConnection(self.parts.hostname, self.parts.port, timeout=60)
         token = self.token if token is None else token
         more = "".join("&" + urllib.parse.urlencode({name: value}) for name, value in (parameters or {}).items())
@@ -61,7 +62,7 @@ class Server:
 
 
 class Client:
-    """One WebSocket. Takes each picture as soon as it has read it, unless `lazy`."""
+    """One WebSocket. Acknowledges each picture as soon as it has read it, unless `lazy`."""
 
     def __init__(self, server, token=None, lazy=False, **headers):
         self.lazy, self.rest, self.seen, self.end = lazy, b"", [], None
@@ -78,7 +79,7 @@ class Client:
         self.status = int(head.split()[1])
 
     def more(self):
-        if self.end is not None:  # what keeps a connection alive is no message
+        if self.end is not None:  # packets that keep a connection alive do not count
             left = self.end - time.monotonic()
             if left <= 0:
                 raise TimeoutError("no such message came")
@@ -112,7 +113,7 @@ class Client:
         self.send_bytes(json.dumps(message).encode())
 
     def read(self):
-        """The next message: a dict. Of a picture, its header with `files`, the bytes of each image."""
+        """Returns the next message, a dict. For a picture it is the header with `files`, the bytes of each image."""
         whole = b""
         while True:
             first, second = self.take(2)
@@ -128,7 +129,7 @@ class Client:
                 self.send_bytes(data, 10)
             if opcode >= 8:
                 continue
-            whole, kind = whole + data, opcode or kind  # of a message in pieces the first has the kind
+            whole, kind = whole + data, opcode or kind  # if a message is in pieces, the first has its kind
             if not first & 0x80:
                 continue
             data, whole = whole, b""
@@ -147,7 +148,7 @@ class Client:
                 return header
 
     def until(self, wanted, seconds=30):
-        """The first message that `wanted` is true of; those before it are in `seen`."""
+        """Returns the first message for which `wanted` is true; it and all messages before it are in `seen`."""
         self.seen, self.end = [], time.monotonic() + seconds
         try:
             while True:
@@ -163,7 +164,7 @@ class Client:
             self.socket.settimeout(60)
 
     def wait(self, seconds):
-        """Reads what comes meanwhile."""
+        """Reads the messages that arrive in the meantime."""
         self.seen, end = [], time.monotonic() + seconds
         while (left := end - time.monotonic()) > 0:
             if not self.rest and not select.select([self.socket], [], [], left)[0]:
@@ -183,12 +184,13 @@ class Client:
         return self.until(lambda message: message["type"] == kind)
 
     def final(self, stamp=None):
-        """The final picture of the state, or of the one after this client's change with that stamp."""
+        """Waits for the final picture of the current state, or of the state after this client's change with that
+        stamp."""
         return self.until(lambda message: message["type"] == "frame" and message["final"] and
                           (stamp is None or message["stamps"].get(str(self.number)) == stamp))
 
     def begin(self):
-        """Reads what every client gets first."""
+        """Reads the messages that every client gets first."""
         self.number = self.kind("hello")["client"]
         self.state = self.kind("state")
         return self
@@ -199,7 +201,7 @@ class Client:
 
 
 def png_pixels(data):
-    """Width, height and rows of (red, green, blue) of a PNG file of 8 bits without interlacing or alpha."""
+    """Returns width, height and rows of (red, green, blue) of an 8-bit PNG file without interlacing or alpha."""
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     at, packed = 8, b""
     while at < len(data):

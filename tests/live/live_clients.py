@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`penumbra view` with clients that go wrong: one that is gone in the middle of a drag, one that never reads, too many, and
-messages and requests without end. The others are served, and memory stays bounded.   live_clients.py PROGRAM"""
+"""Tests `penumbra view` with clients that fail: one disconnects in the middle of a drag, one never reads, there are too
+many, or they send messages and requests without end. The other clients are served, and memory stays bounded.
+live_clients.py PROGRAM"""
 import math
 import pathlib
 import socket
@@ -28,8 +29,9 @@ def memory(server):
 
 
 def check_gone_in_a_drag(server):
-    """The others see, in the end, the final picture of the last state that came, whether the client says goodbye, is cut off, or
-    is cut off in the middle of a message. A connection that is cut off may lose what was sent last."""
+    """In the end the other clients see the final picture of the last state that arrived, whether the failing client
+    says goodbye, is cut off, or is cut off in the middle of a message. A connection that is cut off may lose the last
+    messages."""
     other = Client(server).begin()
     other.final()
     for turn, how in enumerate(("closes", "is cut off", "is cut off in a message")):
@@ -46,7 +48,7 @@ def check_gone_in_a_drag(server):
             client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # closed by a reset
         client.socket.close()
         frame, quiet = None, 0
-        while quiet < 3:  # nothing comes any more
+        while quiet < 3:  # until nothing comes any more
             came = [message for message in other.wait(0.5) if message["type"] == "frame"]
             frame, quiet = (came[-1], 0) if came else (frame, quiet + 1)
         stamp = frame["stamps"][str(client.number)]
@@ -58,7 +60,7 @@ def check_gone_in_a_drag(server):
 
 
 def check_never_reads(server):
-    """A client that asks and never reads: its answers are not kept without end, and it is disconnected."""
+    """A client sends requests and never reads: its answers are not kept without limit, and it is disconnected."""
     other = Client(server).begin()
     other.final()
     deaf = Client(server, lazy=True)
@@ -66,14 +68,14 @@ def check_never_reads(server):
     end = time.monotonic() + 60
     while not ended and time.monotonic() < end:
         try:
-            for _ in range(20):  # more than 250 a second would end it, too
-                deaf.send(type="x" * 60_000)  # the answer repeats what it refuses
+            for _ in range(20):  # more than 250 requests a second would end it, too
+                deaf.send(type="x" * 60_000)  # the answer repeats the refused text
                 asked += 1
         except (BrokenPipeError, ConnectionResetError):
             ended = True
         time.sleep(0.1)
         if asked % 100 == 0:
-            other.pixel(1, 1)  # the others are served meanwhile
+            other.pixel(1, 1)  # the other clients are served in the meantime
     expect(ended, f"it is disconnected, with {asked} answers not read")
     grown = memory(server) - before
     expect(grown < 64, f"memory grew by {grown:.0f} MiB for a client that does not read {asked} answers")
@@ -82,7 +84,8 @@ def check_never_reads(server):
 
 
 def check_pace(server):
-    """While a client has not shown the last picture of a drag, the next begins after a quarter of a second."""
+    """While a client has not acknowledged the last picture of a drag, the next picture begins only after a quarter of a
+    second."""
     slow, moves, seconds = Client(server).begin(), 120, 2
     first = slow.final()["frame"]
     slow.lazy = True
@@ -95,13 +98,13 @@ def check_pace(server):
     slow.send(type="taken")
     took = time.monotonic() - began
     made = slow.final(moves - 1)["frame"] - first
-    # The first, one each quarter of a second, and the final one, before which a quick one may come.
+    # The first picture, one every quarter of a second, and the final one, which a quick one may precede.
     expect(3 <= made <= 4 * took + 3, f"{made} pictures of {took:.1f} seconds were made for a client that takes none")
     slow.socket.close()
 
 
 def check_too_many(server):
-    """Eight clients; a ninth is told so, and when one goes, another may come."""
+    """There may be eight clients; a ninth is told to try later, and when one leaves, another may come."""
     clients = [Client(server).begin() for _ in range(8)]
     late = Client(server)
     try:
@@ -110,7 +113,7 @@ def check_too_many(server):
     except Closed as closed:
         same(closed.code, 1013, "a ninth client is told to try again later")
     clients[0].send(type="camera", camera=camera(0.3), stamp=5)
-    for client in clients:  # all of them see what one changes
+    for client in clients:  # all of them see the change of one
         client.until(lambda message: message["type"] == "frame" and message["final"] and message["stamps"].get(str(clients[0].number)) == 5)
     for client in clients:
         client.socket.close()
@@ -125,8 +128,8 @@ def check_too_many(server):
 
 
 def check_many_requests(server):
-    """Requests for what takes the server a while, without waiting for answers: some are dropped, memory does not grow with
-    them, and the server goes on."""
+    """Sends requests that take the server a while, without waiting for answers: some are dropped, memory does not grow
+    with their number, and the server continues."""
     client = Client(server).begin()
     client.final()
     before, sockets = memory(server), []

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The animated picture of docs/view.md: the page of `penumbra view` in headless Chromium, photographed while a light is dragged by
-its handle, when the final picture has come, and while the camera orbits.
+"""Makes the animated picture of docs/view.md: the page of `penumbra view` in headless Chromium, photographed while a
+light is dragged by its handle, when the final picture has come, and while the camera orbits.
   live_moving.py PROGRAM SCENE FILE.webp
 A photograph is made when the page has shown a newer picture, so the file shows the order of pictures and not their rate."""
 import io
@@ -18,7 +18,7 @@ from claims import expect, verdict  # noqa: E402
 from live_client import Server  # noqa: E402
 
 WINDOW = {"width": 1180, "height": 720}
-SHOWN = (786, 480)  # of the file, in pixels
+SHOWN = (786, 480)  # size of the picture in the file, in pixels
 STEPS = 28
 MILLISECONDS = {"moving": 90, "final": 900}
 
@@ -39,7 +39,7 @@ class Photographs:
         self.make(MILLISECONDS["final"])
 
     def drag(self, start, place):
-        """Drags the pointer from `start` through place(0 … 1), with a photograph of each picture that this brings."""
+        """Drags the pointer from `start` through place(0 … 1), and photographs each picture that results."""
         self.browser.pointer("mouseMoved", *start)
         self.browser.pointer("mousePressed", *start, button="left", buttons=1, clickCount=1)
         for step in range(1, STEPS + 1):
@@ -71,7 +71,7 @@ def photograph(program, scene, path):
         photographs.drag((x, y), lambda t: (x + 110 * math.sin(2 * math.pi * t), y + 25 * math.sin(2 * math.pi * t)))
         x, y = middle(browser, "#picture")
         photographs.drag((x, y + 150), lambda t: (x - 160 * math.sin(math.pi * t) ** 2, y + 150))
-        browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it, and complains
+        browser.call("Page.navigate", url="about:blank")  # a page whose server has ended would search for it and log errors
     path.parent.mkdir(parents=True, exist_ok=True)
     photographs.write(path)
     return photographs.pictures

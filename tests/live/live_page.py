@@ -39,7 +39,7 @@ class Page:
         return int(self.ask(f"{ROOT}.frame"))
 
     def after(self, action):
-        """Waits for the final picture that an action brings."""
+        """Waits for the final picture that results from an action."""
         before = self.frames()
         action()
         self.browser.wait(f"{ROOT}.frame > {before} && {ROOT}.exact === 'true'")
@@ -76,7 +76,7 @@ class Page:
         self.exact()
 
     def canvas(self):
-        """The picture's pixels, as png_pixels() has them."""
+        """Returns the picture's pixels in the form of png_pixels()."""
         data = self.ask("""(() => { const c = document.getElementById('picture'); const p = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
             let text = ''; for (let i = 0; i < p.length; i += 4) text += String.fromCharCode(p[i], p[i + 1], p[i + 2]);
             return [c.width, c.height, btoa(text)]; })()""")
@@ -99,7 +99,7 @@ class Page:
 
 
 def rendered(page, folder, name, *arguments):
-    """Returns channels and pixels that `render` writes for the saved scene, with the exposure of the page."""
+    """Returns the channels and pixels that `render` writes for the saved scene, with the page's exposure."""
     scene = folder / f"{name}.json"
     scene.write_bytes(page.server.get("/scene.json")[2])
     stops = page.ask("document.getElementById('stops').dataset.stops")
@@ -175,7 +175,7 @@ def check_lights(page, folder):
     length = lambda v: sum(value ** 2 for value in v) ** 0.5  # noqa: E731
     sized = page.state()["lights"][0]["rectangle"]
     expect(length(sized["halfU"]) > 1.3 * length(aimed["halfU"]) and sized["halfV"] == aimed["halfV"], "one side has grown")
-    # Roll: by a sixth of a circle about the middle, as the picture shows it.
+    # Roll: turns by a sixth of a circle about the middle, as seen in the picture.
     handle, middle = page.box("[data-handle='roll']"), page.box("[data-handle='move']")
     start, centre = (handle[0] + handle[2] / 2, handle[1] + handle[3] / 2), (middle[0] + middle[2] / 2, middle[1] + middle[3] / 2)
     x, y = start[0] - centre[0], start[1] - centre[1]
@@ -294,7 +294,7 @@ def check_pixel(page, folder):
 
 
 def check_typed_pixel(page, folder):
-    """A pixel chosen by its numbers, without a pointer: its values, its outline in words, and the pivot there."""
+    """A pixel chosen by its coordinates, without a pointer: its values, its outline in words, and a pivot at it."""
     exr, _ = rendered(page, folder, "typed")
     page.browser.pointer("mouseMoved", 2, 2)
     x, y = min(((x, y) for y in range(64) for x in range(64)), key=lambda at: abs(exr["key.V"][at[1] * 64 + at[0]] - 0.5))
@@ -326,7 +326,7 @@ def check_typed_pixel(page, folder):
 
 
 def check_report(page):
-    """A report names what is to be seen in the address: methods and light samples, for the same scene alone."""
+    """A report's address names the methods and light samples to show; they are used only if the scene is the same."""
     url = page.server.url + "#" + urllib.parse.urlencode({"scene": "scene.json", "a": "view-sample", "b": "edge-scatter", "samples": 16})
     page.browser.open(url)
     page.browser.wait(f"{ROOT}.exact === 'true' && {ROOT}.method?.includes('edge-scatter')")
@@ -343,7 +343,8 @@ def check_report(page):
 
 
 def check_saving(browser, folder):
-    """The button saves the scene and the picture of its light, and `render` of the two gives the picture that the page shows."""
+    """The button saves the scene and the picture of its light, and `render` makes of them the picture that the page
+    shows."""
     into = folder / "saved"
     into.mkdir()
     with Server(PROGRAM, SCENES / "textured-light.json", "--size", "64x64") as server:
@@ -362,7 +363,7 @@ def check_saving(browser, folder):
 
 
 def reached_by_tab(page):
-    """Returns what Tab reaches, from the top: identities, names of options, labels of numbers."""
+    """Returns everything that Tab reaches, from the top: identifiers, names of options, labels of numbers."""
     page.ask("document.activeElement.blur()")
     names = "document.activeElement.id || document.activeElement.dataset.option || document.activeElement.getAttribute('aria-label')"
     reached = set()
@@ -387,7 +388,7 @@ def check_reach(page):
     expect(len(options) > 1 and "radiance g" in numbers, f"options {options}, numbers {numbers}")
     compare = lambda how: page.ask(f"(() => {{ const c = document.getElementById('compare'); c.value = '{how}'; c.dispatchEvent(new Event('change')); }})()")  # noqa: E731
     compare("wipe")
-    page.browser.pointer("mouseMoved", *page.place(0.5, 0.6))  # a surface, at which a pivot may be set
+    page.browser.pointer("mouseMoved", *page.place(0.5, 0.6))  # over a surface, where a pivot may be set
     page.browser.wait("!document.getElementById('pivot').disabled", 20)
     reached = reached_by_tab(page)
     for control in ("picture", "wipe", "method", "method-b", *options, "light-samples", "compare", "channel", "stops", "auto-stops", "size", "camera", "home",
@@ -419,7 +420,7 @@ def main():
             check_typed_pixel(page, folder)
             check_reach(page)
             check_report(page)
-            browser.call("Page.navigate", url="about:blank")  # a page whose server ends looks for it, and complains
+            browser.call("Page.navigate", url="about:blank")  # a page whose server has ended would search for it and log errors
         check_saving(browser, folder)
         if PHOTOGRAPHS:
             with Server(PROGRAM, SCENES / "room.json") as server:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`penumbra view` as a bare client meets it: who is let in, what is refused, and that what it shows in the end is what
-`render` writes.   live_protocol.py PROGRAM"""
+"""Tests `penumbra view` with a minimal client: which connections and messages are accepted, and that the final pictures
+equal those that `render` writes.   live_protocol.py PROGRAM"""
 import json
 import math
 import pathlib
@@ -25,7 +25,7 @@ SIZE = 64
 
 
 def render(scene, folder, name, *arguments):
-    """Returns what `render` writes: the EXR's channels, and the PNG's pixels."""
+    """Returns the output of `render`: the EXR's channels, and the PNG's pixels."""
     exr, png = folder / f"{name}.exr", folder / f"{name}.png"
     subprocess.run([PROGRAM, "render", str(scene), "-o", str(exr), "--png", str(png), "-q", *map(str, arguments)], check=True)
     return read_exr(exr)[0], png_pixels(png.read_bytes())
@@ -65,7 +65,8 @@ def check_who_is_let_in(server):
 
 
 def check_refusals(server):
-    """A message whose request is impossible changes nothing, and is answered; one that no page would send ends the connection."""
+    """A message with an impossible request changes nothing, and is answered; a message that no page would send ends the
+    connection."""
     client = Client(server).begin()
     client.final()
     rectangle = {"center": [0, 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}
@@ -102,11 +103,11 @@ def check_refusals(server):
     ends("a message of 70,000 bytes", 1009, lambda other: other.send_bytes(b" " * 70000))
     ends("a binary message", 1008, lambda other: other.send_bytes(b"x", 2))
     ends("a flood", 1008, lambda other: [other.send(type="still") for _ in range(2000)])
-    client.pixel(1, 1)  # the others are still there
+    client.pixel(1, 1)  # the other clients are still connected
 
 
 def edges_of(scene):
-    """The number of edges in scene floats: float32 of positions relative to the middle of their box."""
+    """Returns the number of edges in scene floats: float32 of positions relative to the middle of their box."""
     triangles = [mesh["triangles"][i] for mesh in scene["meshes"] for i in range(len(mesh["triangles"]))]
     middle = [(min(min(t[k::3]) for t in triangles) + max(max(t[k::3]) for t in triangles)) / 2 for k in range(3)]
     corner = lambda t, i: struct.pack("3f", *(t[3 * i + k] - middle[k] + 0.0 for k in range(3)))  # noqa: E731
@@ -114,13 +115,13 @@ def edges_of(scene):
 
 
 def check_final_pictures(server, scene, folder):
-    """The final picture is the one that `render` writes: of the scene as it is, and as it was changed by hand."""
+    """The final picture equals the one that `render` writes, for the original scene and after changes by hand."""
     client = Client(server).begin()
     frame = client.final()
     exr, png = render(scene, folder, "first", "--exposure", frame["stops"])
     same(frame["images"][0]["type"], "image/png", "the final picture is lossless")
     same(png_pixels(frame["files"][0]), png, "the picture of the scene")
-    if frame["edges"] is None:  # they are counted when the picture is there
+    if frame["edges"] is None:  # edges are counted after the picture has been sent
         frame = client.until(lambda message: message["type"] == "frame" and message["edges"] is not None)
     same(frame["edges"], edges_of(json.loads(server.get("/scene.json")[2])), "the number of edges")
     for x, y in ((5, 60), (30, 40), (40, 20), (0, 0), (63, 63)):
@@ -149,7 +150,8 @@ def check_final_pictures(server, scene, folder):
 
 
 def check_saved_pictures(folder):
-    """Lights with pictures are saved with them, of rectangles and of domes: `render` makes of that what is shown."""
+    """Lights with pictures, rectangles and domes, are saved with them: `render` makes of the saved files the picture
+    that is shown."""
     for name, light in (("textured-light.json", "window"), ("skies/knot.json", "evening")):
         into = folder / name.replace("/", "-").replace(".json", "")
         into.mkdir()
@@ -172,7 +174,7 @@ def check_saved_pictures(folder):
 
 
 def check_comparing(server, scene, folder):
-    """Two methods: each has its own V, the difference is theirs; masks are those of --bits."""
+    """Two methods: each has its own V, and the difference is that of the two; masks equal those of --bits."""
     client = Client(server).begin()
     client.send(type="method", slot="b", entry="view-sample", none=False, stamp=10)
     client.send(type="samples", count=16, stamp=11)
@@ -217,7 +219,7 @@ def is_inside(place, polygon):
 
 
 def check_outline(client, exr):
-    """The share of a light that an outline leaves is V."""
+    """V is the share of a light that the outlines leave visible."""
     for wanted in (0.3, 0.7):
         i = min(range(SIZE * SIZE), key=lambda i: abs(exr["key.V"][i] - wanted) + (exr["id"][i] == 0xffffffff))
         outline = client.pixel(i % SIZE, i // SIZE)["outline"]
@@ -228,10 +230,10 @@ def check_outline(client, exr):
 
 
 def check_moving(server):
-    """Quick pictures of newer and newer states come while something moves; then the final one; for all clients, whether one of
-    them reads or not."""
+    """While something moves, quick pictures of newer and newer states come, and then the final one; to all clients,
+    whether or not one of them reads."""
     client, other = Client(server).begin(), Client(server).begin()
-    silent = Client(server, lazy=True)  # never reads again
+    silent = Client(server, lazy=True)  # reads nothing from now on
     client.final()
     began, came = time.monotonic(), []
     for i in range(60):
@@ -241,7 +243,7 @@ def check_moving(server):
         silent.send(type="pixel", x=1, y=1)
         came += client.wait(0.02)
     client.send(type="still")
-    # The final picture of a small scene may be there before the pointer is let go.
+    # The final picture of a small scene may come before the drag ends.
     frame = next((message for message in came if message["type"] == "frame" and message["final"] and
                   message["stamps"].get(str(client.number)) == 159), None)
     if frame is None:
@@ -262,12 +264,12 @@ def check_moving(server):
     last = other.kind("state")
     expect(state and last["camera"]["eye"] == [6 * math.sin(0.5 + 59 / 60), 3, 6 * math.cos(0.5 + 59 / 60)], "the other client's camera")
     expect(time.monotonic() - began < 60, "nobody waits for who does not read")
-    other.socket.close()  # in the middle of everything
+    other.socket.close()  # closed in the middle of everything
     client.pixel(1, 1)
 
 
 def check_host(scene):
-    """Another address of this machine: of the loopback's own, which all machines have."""
+    """Another address of this machine: one of the loopback addresses, which every machine has."""
     with Server(PROGRAM, scene, "--host", "127.0.0.2") as server:
         expect(server.url.startswith("http://127.0.0.2:"), f"the address: {server.url}")
         same(server.get()[0], 200, "the page on another address")
@@ -281,7 +283,7 @@ def check_host(scene):
 
 
 def check_beginning(scene):
-    """The view begins with two methods, as a report's command asks."""
+    """The view begins with two methods, as the command in a report requests."""
     with Server(PROGRAM, scene, "--method", "view-sample", "--method-b", "depth-complexity", "--light-samples", 16) as server:
         frame = Client(server).begin().final()
         same([(answer["method"], answer["lightSamples"]) for answer in frame["answers"]], [("view-sample", 16), ("depth-complexity", 16)], "the two methods")
@@ -290,8 +292,8 @@ def check_beginning(scene):
 
 
 def check_forest(folder):
-    """Instances without copies, a thousand million triangles: the final picture and what pixels say are those of `render`;
-    what needs the copies is refused."""
+    """Instances without copies, a thousand million triangles: the final picture and the values of pixels equal those of
+    `render`; features that need copies are refused."""
     document, scene = json.loads(LIGHTS), folder / "forest.json"
     document["size"] = [48, 36]
     document["meshes"].append({"name": "balls", "shape": {"type": "sphere", "radius": 0.2, "segments": 256}, "instances": [
@@ -325,7 +327,8 @@ def check_forest(folder):
 
 
 def check_slow_method(folder):
-    """A method that takes long at any size holds up a drag for few pictures; then light samples of another stand in, until the end."""
+    """A method that takes long at any size delays a drag for a few pictures only; then another method's light samples
+    replace it until the drag ends."""
     document, scene, slow = json.loads(LIGHTS), folder / "slow.json", "layered-attenuation"
     document["lights"] = document["lights"][:1]
     scene.write_text(json.dumps(document))
@@ -339,7 +342,8 @@ def check_slow_method(folder):
                 "rectangle": {"center": [0.01 * (stamp % 50), 4, 0], "halfU": [0.5, 0, 0], "halfV": [0, 0, 0.5]}, "radiance": [10, 10, 10]})
             quick += [message for message in client.wait(0.05) if message["type"] == "frame" and not message["final"]]
         made = [(message["answers"][0]["method"].split(":")[0], message["answers"][0]["milliseconds"]) for message in quick]
-        # At any quality the method's maps take long. Three pictures until the quality is the lowest, two slow ones there, one on its way.
+        # The method's maps take long at any quality. There are three pictures until the quality is lowest, two slow
+        # ones at that quality, and one already begun.
         run, longest = 0, 0
         for method, milliseconds in made:
             run = run + 1 if method == slow and milliseconds > 60 else 0
@@ -352,7 +356,7 @@ def check_slow_method(folder):
 
 
 def check_watching(folder):
-    """A lamp that is edited in the file costs no mesh; a mesh file that is edited costs the meshes."""
+    """Editing a lamp in the file does not send meshes again; editing a mesh file does."""
     into = folder / "edited"
     into.mkdir()
     mesh, scene = into / "tent.obj", into / "scene.json"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests what `penumbra view` answers its page's 3D view, against what `wedges` and `inspect` write.   live_space.py PROGRAM"""
+"""Compares the answers of `penumbra view` for its page's 3D view with the output of `wedges` and `inspect`.
+live_space.py PROGRAM"""
 import json
 import pathlib
 import struct
@@ -19,7 +20,7 @@ PROGRAM = sys.argv[1]
 
 
 class Space:
-    """An answer: `header`, and arrays of numbers by name."""
+    """An answer: its `header`, and arrays of numbers by name."""
 
     def __init__(self, status, data):
         self.status, self.text, self.arrays = status, "", {}
@@ -42,7 +43,7 @@ def ask(server, what, **parameters):
 
 
 def wedges(scene, folder, *arguments):
-    """Returns what `wedges` writes of the scene."""
+    """Returns the output of `wedges` for the scene."""
     subprocess.run([PROGRAM, "wedges", str(scene), "--json", str(folder / "wedges.json"), *arguments], check=True, stdout=subprocess.DEVNULL)
     return json.loads((folder / "wedges.json").read_text())
 
@@ -75,7 +76,7 @@ def check_shadows(server, scene, folder):
         same(len(answer.arrays["bodyTriangles"]), 9 * sum(bodies[1::4]), "their triangles")
         same(len(answer.arrays["floorLines"]), 6 * sum(bodies[3::4]), "and what the floor cuts out of them")
         expect(answer.header["silhouettes"] > 50, "silhouettes of the knot")
-    # A wedge's planes hold at the corners of its body, and the body reaches the floor.
+    # The planes of a wedge hold at the corners of its body, and the body reaches the floor.
     known = wedges(scene, folder, "--light", "key")
     number = next(i for i, wedge in enumerate(known["wedges"]) if wedge["outcome"] == "wedge" and wedge["edge"][0][1] > -0.5)
     one = ask(server, "shadows", light="key", wedge=number)
@@ -91,10 +92,10 @@ def check_shadows(server, scene, folder):
 
 
 def check_pixel(server, scene, folder):
-    """The wedges that contain what a pixel sees are those of `wedges --explain`, which names one of each edge."""
+    """The wedges that contain a pixel's point are those of `wedges --explain`, which names one for each edge."""
     subprocess.run([PROGRAM, "render", str(scene), "-o", str(folder / "v.exr"), "-q"], check=True)
     exr = read_exr(folder / "v.exr")[0]
-    found = [(i % 64, i // 64) for i, v in enumerate(exr["key.V"]) if 0.1 < v < 0.9 and exr["id"][i] < 2]  # of the floor
+    found = [(i % 64, i // 64) for i, v in enumerate(exr["key.V"]) if 0.1 < v < 0.9 and exr["id"][i] < 2]  # points on the floor
     expect(len(found) > 30, f"pixels in the penumbra: {len(found)}")
     for x, y in found[::len(found) // 4]:
         answer = ask(server, "shadows", light="key", x=x, y=y)

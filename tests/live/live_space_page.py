@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The 3D view of `penumbra view` in headless Chromium (WebGL in software): what is drawn, by which controls, and that it is what
-`wedges` builds.   live_space_page.py PROGRAM SCENES [PHOTOGRAPHS]"""
+"""Tests the 3D view of `penumbra view` in headless Chromium (WebGL in software): what is drawn, by which controls, and
+that it equals what `wedges` builds.   live_space_page.py PROGRAM SCENES [PHOTOGRAPHS]"""
 import base64
 import json
 import pathlib
@@ -29,7 +29,7 @@ class SpacePage(Page):
         return int(self.data(name))
 
     def settle(self):
-        """Waits until what was asked for is drawn."""
+        """Waits until everything requested is drawn."""
         self.browser.wait(f"{CANVAS}.dataset.busy === 'false'", 60)
         self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
         self.browser.wait(f"{CANVAS}.dataset.busy === 'false' && Number({CANVAS}.dataset.drawn) > 0", 60)
@@ -39,14 +39,14 @@ class SpacePage(Page):
         self.settle()
 
     def set(self, control, value):
-        """A control that asks for no other picture."""
+        """Sets a control that does not lead to another picture."""
         action = f"c.checked !== {json.dumps(value)} && c.click()" if isinstance(value, bool) else \
             f"(c.value = {json.dumps(str(value))}, c.dispatchEvent(new Event('input')), c.dispatchEvent(new Event('change')))"
         self.ask(f"(() => {{ const c = document.getElementById('{control}'); {action}; }})()")
         self.settle()
 
     def pixels(self):
-        """Rows of the 3D view as it is on the screen, and where it begins."""
+        """Returns the rows of the 3D view as it is on the screen, and its place in the window."""
         self.ask("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
         left, top, width, height = [round(value) + edge for value, edge in zip(self.box("#space-canvas"), (2, 2, -4, -4))]
         picture = self.browser.call("Page.captureScreenshot", format="png", clip={"x": left, "y": top, "width": width, "height": height, "scale": 1})
@@ -73,7 +73,7 @@ def check_drawn(page, scene, folder):
     rows, _ = page.pixels()
     expect(len(rows) > 300 and len(colors(rows)) > 100, f"the view is not blank: {len(colors(rows))} colours")
     page.picture("space-first")
-    # Each layer is drawn, and not when it is off.
+    # Each layer is drawn, and is not drawn when it is off.
     page.set("layer-volume", True)
     page.set("layer-defects", True)
     same(page.number("defectLines"), 4, "the floor's outline")
@@ -167,7 +167,7 @@ def check_light_and_pixel(page, folder):
     page.settle()
     page.ask("document.getElementById('tab-picture').click()")
     exr, _ = rendered(page, folder, "pixel")
-    i = min(range(64 * 64), key=lambda i: abs(exr["key.V"][i] - 0.5) + (exr["id"][i] == 0xffffffff))  # in a penumbra
+    i = min(range(64 * 64), key=lambda i: abs(exr["key.V"][i] - 0.5) + (exr["id"][i] == 0xffffffff))  # a pixel in a penumbra
     x, y = i % 64, i // 64
     page.browser.pointer("mouseMoved", *page.place((x + 0.5) / 64, (y + 0.5) / 64))
     page.browser.wait(f"document.getElementById('readout').dataset.pixel === '{x},{y}'")
@@ -197,7 +197,7 @@ def check_reach(page):
 
 
 def take_pictures(browser):
-    """Takes pictures for the documentation, and to look at."""
+    """Takes pictures for the documentation, and for people to look at."""
     for name, scene, window in (("space", "contact.json", {"width": 1400, "height": 900}), ("space-dark", "contact.json", {"width": 1400, "height": 900, "dark": True}),
                                 ("space-narrow", "room.json", {"width": 420, "height": 900, "phone": True}),
                                 ("space-broken", "broken.json", {"width": 1400, "height": 900})):

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`--tev`, of pictures, comparisons and sequences: what arrives at a listener that understands tev's protocol is what the EXR has.
+"""Tests `--tev` for pictures, comparisons and sequences: a listener that understands tev's protocol gets what the EXR
+has.
   tev_pictures.py PROGRAM"""
 import pathlib
 import socket
@@ -20,7 +21,7 @@ PROGRAM = sys.argv[1]
 
 
 class FakeTev(threading.Thread):
-    """Keeps the pictures that one program sends: {name: (width, height, {channel: values})}."""
+    """Keeps the pictures that one run of the program sends: {name: (width, height, {channel: values})}."""
 
     def __init__(self):
         super().__init__()
@@ -100,7 +101,7 @@ def main():
         tev.join(10)
         check(tev, "a.exr", folder / "a.exr", ["R", "G", "B", "A", "V", *lights])
         same(tev.focused, ["a.exr"], "the picture comes to the front")
-        # A picture that does not fit one packet comes in stripes.
+        # A picture too large for one packet comes in stripes.
         tev = FakeTev()
         same(run("render", scene, "-o", folder / "wide.exr", "--size", "900x300", "--light", "key", "--tev", tev.address).returncode, 0, "in stripes")
         tev.join(10)
@@ -112,7 +113,7 @@ def main():
         same(sorted(tev.pictures), ["edge-scatter.exr", "reference.exr", "view-sample.exr"], "pictures of a comparison")
         check(tev, "view-sample.exr", folder / "c" / "view-sample.exr", ["R", "G", "B", "A", "V"])
 
-        # A sequence: each frame is a picture of its own name, one after the other on one connection.
+        # A sequence: each frame is a picture with its own name, one after the other on one connection.
         for frame in (1, 2, 3):
             (folder / f"moving.000{frame}.json").write_text(LIGHTS.replace('"translate": [0, 1, 0]', f'"translate": [{0.4 * frame - 0.8}, 1, 0]'))
         tev = FakeTev()

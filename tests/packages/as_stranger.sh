@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# as_stranger.sh package|tarball|driver [FOLDER]: what try.sh runs in a bare system, as a user who owns nothing but a home.
+# as_stranger.sh package|tarball|driver [FOLDER]: the part of try.sh that runs in a bare system, as a user who may write
+# only to a home folder.
 set -euo pipefail
 kind=$1
 [[ -z ${2-} ]] || PATH=$2/bin:$PATH
@@ -31,13 +32,13 @@ assert v.shape == (32, 32) and 0 < v.mean() < 1, v'
     [[ -s /usr/share/man/man1/penumbra-render.1 || -s /usr/share/man/man1/penumbra-render.1.gz ]] || fail "no manual page"
     ;;
   tarball)
-    # The program names what it cannot do without a driver.
+    # Without a driver the program's error says what is missing.
     code=0
     penumbra render "a room.json" -o none.exr --method pcss --size 32x32 --quiet 2>error.txt || code=$?
     ((code == 4)) && grep -qi 'vulkan' error.txt || fail "pcss without Vulkan: exit $code, $(cat error.txt)"
     ;;
   driver)
-    # The size is 512x512 alone: a driver for processors is slow.
+    # Only the size 512x512, as a driver for processors is slow.
     code=0
     bash "$2/gpu.sh" gpu.json cpu 512 2>gpu.txt || code=$?
     python3 - <<'END' || fail "gpu.sh: exit $code, $(cat gpu.txt)"

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# gpu_verdict.sh: bench/gpu.sh exits with 1 where a run fails or bits differ, and with 0 where runs are only out of time. The program here is
-# a script, which plays each of these parts.
+# gpu_verdict.sh: tests that bench/gpu.sh exits with 1 if a run fails or bits differ, and with 0 if runs are only out of
+# time. A script stands in for the program and behaves in each of these ways.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../.." && pwd)
 work=$(mktemp -d)
@@ -10,7 +10,8 @@ mkdir "$work/bin"
 cp "$root/bench/gpu.sh" "$work/"
 cat >"$work/bin/penumbra" <<'END'
 #!/bin/bash
-# The words of $FAIL are looked for in the arguments; $CODE is what such a run ends with, `other` stands for other bits.
+# A run whose arguments contain the words of $FAIL ends with the exit code $CODE, or writes other bits if $CODE is
+# `other`.
 all="$* "
 [[ -z $FAIL || $all != *"$FAIL"* || $CODE == other ]] || exit "$CODE"
 while (($#)); do
@@ -24,7 +25,7 @@ done
 END
 chmod +x "$work/bin/penumbra"
 
-# verdict EXPECTED FAIL CODE
+# verdict EXPECTED FAIL CODE: expects that gpu.sh exits with EXPECTED.
 verdict() {
   local code=0
   FAIL=$2 CODE=$3 bash "$work/gpu.sh" "$work/gpu.json" "" 512 2>"$work/said.txt" || code=$?

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# try.sh BUILD WORK: makes the Debian package and the tarball of a built tree, and tries both in a bare Debian 12 made by debootstrap, as
-# another user, in a folder with spaces, where /tmp cannot be written. Skipped (77) without root, debootstrap or mirror.
+# try.sh BUILD WORK: makes the Debian package and the tarball of a built tree, and tries both in a bare Debian 12 made by
+# debootstrap: as another user, in a folder with spaces in its name, and with a /tmp that cannot be written. Skipped (77)
+# without root, debootstrap or a mirror.
 #   The package is installed by apt; the program renders, compares and repairs, and Python imports the module.
 #   The tarball is tried in a system without other packages, where methods that need no Vulkan give the same bytes as the built tree; and in
 #     the system with the package, whose driver it finds, where other methods run, too.
@@ -12,7 +13,7 @@ mirror=${PENUMBRA_MIRROR:-http://deb.debian.org/debian}
 skip() { echo "skipped: $1"; exit 77; }
 ((EUID == 0)) || skip "only root can make a bare system"
 command -v debootstrap >/dev/null || skip "debootstrap is not installed"
-# A namespace of its own, so that nothing stays mounted.
+# A separate mount namespace, so that nothing stays mounted.
 [[ ${PENUMBRA_UNSHARED-} == 1 ]] || PENUMBRA_UNSHARED=1 exec unshare -m "$0" "$@"
 mkdir -p "$work"
 work=$(readlink -f -- "$work")
@@ -25,7 +26,8 @@ if [[ ! -e $work/bare/etc/debian_version ]]; then
   mv "$work/bare.part" "$work/bare"
 fi
 
-# system NAME: a copy of the bare system with another user, a clone's scenes that he can read, and /tmp that he cannot write.
+# system NAME: makes a copy of the bare system with another user, a clone's scenes that this user can read, and a /tmp
+# that the user cannot write.
 system() {
   umount "$work/$1/proc" 2>/dev/null || true
   rm -rf "${work:?}/$1"
@@ -36,7 +38,7 @@ system() {
   cp "$here/as_stranger.sh" "$here"/../../scenes/room.json "$work/$1/srv/"
   chmod 755 "$work/$1/tmp"
 }
-# as_stranger NAME WORDS…: runs as_stranger.sh there, as he would: with nothing of this process' environment.
+# as_stranger NAME WORDS…: runs as_stranger.sh in that system as this user, without the environment of this process.
 as_stranger() {
   local name=$1
   shift
@@ -61,7 +63,7 @@ tarball=$(ls "$work"/made/*.tar.xz)
 system nothing
 for name in nothing installed; do
   mkdir -p "$work/$name/opt/my programs"
-  # Debian's smallest system has no xz.
+  # Debian's minimal system has no xz, so the tarball is unpacked from outside.
   tar -C "$work/$name/opt/my programs" -xJf "$tarball"
 done
 folder=$(basename "$tarball" .tar.xz)

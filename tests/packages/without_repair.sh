@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# without_repair.sh: cmake/tarball.sh packs a build of `penumbra` alone, without penumbra-repair. Programs here are words, and `ldd` is quick.
+# without_repair.sh: tests that cmake/tarball.sh packs a build of `penumbra` alone, without penumbra-repair. Tiny
+# scripts stand in for the programs and for `ldd`, to be quick.
 set -euo pipefail
 root=$(cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/../.." && pwd)
 work=$(mktemp -d)

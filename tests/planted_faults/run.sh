@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Plants each fault of faults.txt into a copy of the tree, builds what is needed and runs the tests that should fail.
-#   run.sh match SOURCE               does every fault still fit the tree? Builds nothing.
-#   run.sh plant SOURCE WORK [NAME…]  plants all, or those whose names hold one of these; prints a table. What an earlier run
-#                                     built in WORK is used again.
-# Exit 1 if a fault does not fit or does not compile, a test fails without any, or a fault survives. See README.md.
+#   run.sh match SOURCE               tests whether every fault still fits the tree. Builds nothing.
+#   run.sh plant SOURCE WORK [NAME…]  plants all faults, or those whose names contain one of the NAMEs; prints a table.
+#                                     Objects that an earlier run built in WORK are used again.
+# Exits with 1 if a fault does not fit or does not compile, if a test fails without a fault, or if a fault survives (no
+# test fails). See README.md.
 set -euo pipefail
 
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
@@ -49,20 +50,21 @@ fit_all() {
   return $bad
 }
 
-# swap FILE FROM TO: the one place, as text.
+# swap FILE FROM TO: replaces the only occurrence of FROM, as plain text.
 swap() {
   FROM=$2 TO=$3 perl -0777 -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$1"
 }
 
 # CMAKE_BUILD_PARALLEL_LEVEL chooses the number of jobs here.
 build() { cmake --build "$work/tree/build" --target "$@" >"$work/build.log" 2>&1; }
-# A test executable's quick tests, up to the first that fails; anything but success is a caught fault.
+# passes EXECUTABLE FILTER: runs its quick tests up to the first that fails. Anything but success means that the fault
+# is caught.
 passes() {
   (cd "$work/tree/build" && timeout 1200 "./$1" --gtest_filter="$2-$full" --gtest_brief=1 --gtest_fail_fast) >"$work/test.log" 2>&1
 }
 
-# Makes $work/tree what the source is, without builds, their outputs and $work itself. What is the same already stays, and
-# its objects with it.
+# Makes $work/tree a copy of the source, without builds, their outputs and $work itself. Files that are the same already
+# stay untouched, so that their objects stay valid.
 copy_tree() {
   local file
   mkdir -p "$work/tree/build"  # in it, as builds mostly are: so compiler caches know them
@@ -74,7 +76,8 @@ copy_tree() {
   (cd "$work/tree" && find . -path ./build -prune -o -type f -printf '%P\0') | sort -z | comm -z -13 "$work/files" - | (cd "$work/tree" && xargs -0r rm --)
 }
 
-# Every pattern of the filter names a test, and all pass where nothing is planted.
+# find_nothing_unplanted EXECUTABLE FILTER: fails unless every pattern of the filter matches a test, and all of these
+# tests pass without a fault.
 find_nothing_unplanted() {
   local pattern
   tr ':' '\n' <<<"$2" >"$work/patterns"

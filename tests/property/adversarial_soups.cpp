@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random cases of the soup fuzzer: no bit of any exact mask method may be other than the truth, which a judge computes
-// from its definition in integers, without any code of the program's.
+// Random cases of the soup fuzzer: every bit of every exact mask method must be the truth, which a judge computes from
+// its definition in integers, without any code of the program.
 
 #include "tests/fuzz/soup_methods.hpp"
 
@@ -29,7 +29,7 @@ fuzz::SoupFindings check_soups(std::uint32_t first_seed, std::uint32_t count) {
   return all;
 }
 
-/// The cases must be what they are meant to be: most can be made, and both answers are common.
+/// Expects that the cases serve their purpose: most can be made, and both answers are common.
 void expect_worth(const fuzz::SoupFindings& found, std::uint32_t count) {
   EXPECT_GT(found.cases, count / 2);
   EXPECT_GT(found.visible, found.pairs / 20);
@@ -43,7 +43,7 @@ void expect_worth(const fuzz::SoupFindings& found, std::uint32_t count) {
 }
 
 TEST(AdversarialSoups, EveryBitIsTheTruth) {
-  constexpr std::uint32_t kCount = 24;  // a driver on the processor compiles shaders for nearly each
+  constexpr std::uint32_t kCount = 24;  // few, as a driver on the processor compiles shaders for nearly each of them
   expect_worth(check_soups(0, kCount), kCount);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers for all points of a box against the test of single rays in double: what is clear meets nothing, what is
-// blocked meets something, at points anywhere in the box.
+// Tests answers for all points of a box against single rays in double: rays of clear directions meet nothing, those of
+// blocked directions meet something, from points anywhere in the box.
 
 #include "reference/common_answers.hpp"
 
@@ -21,9 +21,9 @@ namespace {
 using visibility::SceneFloats;
 
 constexpr std::size_t kDirections = 64;
-constexpr std::uint32_t kNowhere = 0xfffffffeU;  // number of a plane that no triangle has
+constexpr std::uint32_t kNowhere = 0xfffffffeU;  // number of a plane in which no triangle lies
 
-/// Small triangles on a lattice, beside a floor and, in most soups, a wall.
+/// Small triangles on a lattice, with a floor and, in most soups, a wall.
 scenes::Scene lattice_room(std::mt19937& random) {
   std::uniform_int_distribution<int> place(-6, 6), step(-2, 2);
   scenes::Scene scene;
@@ -50,7 +50,8 @@ std::vector<glm::vec3> some_directions(std::mt19937& random) {
   return directions;
 }
 
-/// Sure outcome of a ray: it meets a triangle that is not on the plane `own`, or none.
+/// Certain outcomes of a ray: it meets a triangle outside the plane `own`, or it misses all of them. Both are false if
+/// rounding leaves it open.
 struct Ray {
   bool meets = false, misses = true;
 };
@@ -75,7 +76,8 @@ TEST_P(CommonAnswersProperty, HoldForEveryPointOfTheBox) {
   std::uniform_real_distribution<float> real(0, 1);
   std::size_t clear_count = 0, blocked_count = 0, clear_missed = 0, rays_missed = 0;
   for (int box_number = 0; box_number < 40; ++box_number) {
-    // Boxes on the floor, whose plane is then their own; some others anywhere, of the size of a triangle or a point.
+    // Boxes on the floor, whose plane is then their own plane; some other boxes anywhere, as large as a triangle or a
+    // point.
     const bool on_floor = box_number % 2 == 0;
     const float size = box_number % 8 == 3 ? 0 : 2 * real(random);
     const glm::vec3 floor(floats.corners(0)[0]);
@@ -101,7 +103,7 @@ TEST_P(CommonAnswersProperty, HoldForEveryPointOfTheBox) {
         }
         const Ray ray = ray_of(floats, own, p, directions[j]);
         EXPECT_FALSE(is_clear && ray.meets) << "box " << box_number << ", direction " << j;
-        // The floor below a box on it is not in the way of points on it, and blocks none.
+        // A box on the floor: the floor neither makes directions unclear nor blocks them.
         EXPECT_FALSE(is_blocked && !ray.meets) << "box " << box_number << ", direction " << j;
         all_miss = all_miss && ray.misses;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact areas of soups on a lattice: what must not change them, and what point samples say.
+// Exact areas of soups on a lattice: changes that must not matter, and agreement with point samples.
 
 #include "tests/unit/exact_area_soups.hpp"
 #include "visibility/pair_truth.hpp"
@@ -21,7 +21,8 @@ using tests::soup_scene;
 
 constexpr Lamp kLamps[] = {Lamp::flat, Lamp::tilted, Lamp::polygon, Lamp::disk, Lamp::ellipse, Lamp::sphere};
 
-// docs/exact.md: a vertex off by an ulp moves the area by an ulp times the edges at it; a few hundred of them.
+// docs/exact.md: a vertex that is off by an ulp moves the area by an ulp times the lengths of its edges; there are a
+// few hundred vertices.
 constexpr double kAreaRounding = 1e-12;
 
 class ExactAreaSoups : public testing::TestWithParam<std::uint32_t> {};
@@ -42,7 +43,8 @@ TEST_P(ExactAreaSoups, OrderAndWindingChangeNoBitAndDuplicatesNoArea) {
     for (int i = 0; i < 12; ++i) {
       const glm::vec3 p = soup_receiver(random);
       EXPECT_EQ(one.visibility(p), other.visibility(p));
-      EXPECT_NEAR(one.visibility(p), more.visibility(p), kAreaRounding);  // edges of which half cancelled come back
+      EXPECT_NEAR(one.visibility(p), more.visibility(p),
+                  kAreaRounding);  // duplicates bring back edges that cancelled partly
     }
   }
 }
@@ -53,7 +55,7 @@ TEST_P(ExactAreaSoups, SplitFacesCoverTheSame) {
   const std::vector<Corners> soup = lattice_soup(random, 16);
   std::vector<Corners> split;
   for (const auto& [a, b, c] : soup) {
-    const glm::dvec3 middle = 0.5 * (a + b);  // exact: a T-junction for triangles that share the edge
+    const glm::dvec3 middle = 0.5 * (a + b);  // exact: it makes a T-junction with triangles that share the edge
     if (random() % 2 == 0) {
       split.push_back({a, b, c});
     } else {
@@ -86,8 +88,9 @@ TEST_P(ExactAreaSoups, RationalSweepsAgree) {
 TEST_P(ExactAreaSoups, PointSamplesAverageToTheArea) {
   SCOPED_TRACE(testing::Message() << "seed " << GetParam());
   // Jittered light samples, new ones for every view sample: each is uniform in its own stratum and the strata share the
-  // light, so the expected count is N V. All K = N · view samples are independent and in {0, 1}: by Hoeffding their
-  // mean is off by more than ε with a chance below 2 exp(−2 K ε²), here 1e-12.
+  // light, so the expected number of visible ones is N V. All K = N · (number of view samples) outcomes are independent
+  // and in {0, 1}: by Hoeffding the probability that their mean is off by more than ε is below 2 exp(−2 K ε²), here
+  // 1e-12.
   std::mt19937 random(GetParam());
   double difference = 0;
   std::size_t count = 0, part = 0;
@@ -123,8 +126,8 @@ TEST_P(ExactAreaSoups, PointSamplesAverageToTheArea) {
 INSTANTIATE_TEST_SUITE_P(Seeds, ExactAreaSoups, testing::Range(0u, 8u));
 
 TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
-  // Triangles beyond the light, in its plane, behind p, in p's plane, edge-on to p, without area: and each also as part
-  // of a triangle that crosses. The part of a crossing one between p and the light hides.
+  // Triangles beyond the light, in its plane, behind p, in p's plane, edge-on to p, and without area hide nothing; of a
+  // triangle that crosses a plane, only the part between p and the light hides.
   const auto alone = [](const Corners& corners, const glm::vec3& p = {0, -1, 0}) {
     return AreaStage(soup_scene({corners}, Lamp::flat)).visibility(p);
   };
@@ -134,10 +137,10 @@ TEST(ExactArea, WhatIsNotBetweenHidesNothing) {
   EXPECT_EQ(alone({{{-9, -1, -9}, {9, -1, -9}, {0, -1, 9}}}, {1, -1, 1}), 1);
   EXPECT_EQ(alone({{{0, -1, -9}, {0, 5, 0}, {0, -1, 9}}}), 1);
   EXPECT_EQ(alone({{{-1, 1, 0}, {0, 1, 0}, {1, 1, 0}}}), 1);
-  // Upright at x = ¼, from far below to far above both planes: seen from x = 0 it is x = 1 at one quarter of the way;
-  // from there up it covers x from ¼ to 1.
+  // Upright at x = ¼, from far below to far above both planes: seen from x = 0, its points a quarter of the way up
+  // appear at x = 1; higher points cover x from 1 down to ¼.
   EXPECT_NEAR(alone({{{0.25, -60, 0}, {0.25, 60, -60}, {0.25, 60, 60}}}, {0, -1, 0}), 1 - 0.75 / 2, kAreaRounding);
-  // A triangle through the light's plane at x = 0, rising to the right: its part below, x < 0, hides light.
+  // A triangle that crosses the light's plane at x = 0, rising to the right: its lower part, x < 0, hides light.
   EXPECT_NEAR(alone({{{-16, -13, -29}, {-16, -13, 29}, {16, 19, 0}}}, {0.5, -1, 0}), 0.5, kAreaRounding);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Every pair of lattice soups against the exact decision, without tolerance.
+// Compares every pair of lattice soups with the exact decision, without tolerance.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
@@ -22,7 +22,8 @@
 
 namespace penumbra::tests {
 
-/// Returns the view samples of all cameras, and also points on triangles that no camera's rounding has moved off them.
+/// Returns the view samples of all cameras, and also points on triangles that are exactly on them, without a camera's
+/// rounding.
 inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const visibility::SceneFloats& floats,
                                            std::mt19937& random) {
   visibility::ViewSamples samples = samples_on_triangles(floats, 8, 8, random);
@@ -32,16 +33,18 @@ inline visibility::ViewSamples all_samples(const scenes::Scene& scene, const vis
   return samples;
 }
 
-/// `count` soups with corners in −range … range. Without `any_light`, only light samples in rows.
+/// Soups number `first` to `first + count` with corners in −range … range. Without `any_light`, light samples are in
+/// rows only.
 struct LatticeRun {
   int range = 1;
   std::uint32_t count = 1;
   bool any_light = true;
   std::uint32_t first = 0;
-  std::uint64_t* open = nullptr;  ///< gets how many pairs more the method left to exact predicates, if given
+  std::uint64_t* open =
+      nullptr;  ///< if given, increased by the number of pairs that the method left to exact predicates
 };
 
-/// A method for each layout of light samples: a method that is given another layout compiles its kernels again.
+/// Keeps a method for each layout of light samples, as a method that gets another layout compiles its kernels again.
 class MethodsByLayout {
  public:
   using Make = std::function<std::unique_ptr<visibility::Method>()>;
@@ -58,7 +61,7 @@ class MethodsByLayout {
   std::map<std::array<std::uint32_t, 3>, std::unique_ptr<visibility::Method>> methods_;
 };
 
-/// Returns how the pairs turned out.
+/// Checks the soups, and returns the numbers of pairs by outcome.
 inline PairCounts expect_lattice_truth(MethodsByLayout& methods, const LatticeRun& run_of) {
   PairCounts counts;
   for (std::uint32_t i = run_of.first; i < run_of.first + run_of.count; ++i) {
@@ -78,7 +81,7 @@ inline PairCounts expect_lattice_truth(MethodsByLayout& methods, const LatticeRu
   return counts;
 }
 
-/// Checks a thousand soups at a time, each thousand under a name, up to the first that fails.
+/// Checks a thousand soups at a time, prints the result of each thousand, and stops at the first that fails.
 inline PairCounts expect_lattice_truth_by_thousands(MethodsByLayout& methods, const LatticeRun& run_of,
                                                     const std::string& name) {
   PairCounts counts;

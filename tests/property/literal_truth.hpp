@@ -2,8 +2,8 @@
 #pragma once
 
 // Literal truth: does a segment from p meet a triangle? Evaluated in GMP's rationals: another library and another
-// formula than the program's predicates. The crossing point with the triangle's plane is computed, and the side of each
-// edge that it is on says whether it is on the triangle.
+// formula than the program's predicates. The point where the segment crosses the triangle's plane is computed; it is on
+// the triangle if it is on the inner side of each edge.
 
 #include <glm/vec3.hpp>
 #include <gmpxx.h>
@@ -56,10 +56,11 @@ struct ExactTriangle {
   }
 };
 
-/// p + t · direction, 0 < t < 1, or without an end where the light is infinitely far away.
+/// p + t · direction, with 0 < t < 1, or 0 < t if the light is infinitely far away.
 struct ExactSegment {
   rational::Vector p, direction;
-  rational::Vector straight;  ///< before ties were moved aside: a triangle whose plane holds its end is not met
+  rational::Vector straight;  ///< the direction before ties were moved aside: a triangle whose plane holds the end of
+                              ///< that segment is not met
   bool ends = true;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests masks under spheres and suns, whose light points differ from view sample to view sample, with triangles that
-// touch them exactly: every bit of the methods for such lights is the exact decision on these points, without
-// tolerance.
+// Tests masks under spheres and suns, whose light points differ between view samples, with triangles that touch these
+// points exactly: every bit of the methods for such lights is the exact decision on these points, without tolerance.
 
 #include "tests/agreement/cracked_ball.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -86,7 +85,7 @@ class ConeLattices : public tests::DeviceTest,
 TEST_P(ConeLattices, EveryPairIsTheExactDecision) {
   expect_all_kinds(look(0, 60));
 }
-/// 60,000 soups of each kind of light for each method.
+/// Tests 60,000 soups for each kind of light and each method.
 TEST_P(ConeLattices, TensOfThousandsFull) {
   PairCounts counts;
   for (std::uint32_t done = 0; done < 20'000 && !HasFailure(); done += 1000) {
@@ -106,16 +105,17 @@ INSTANTIATE_TEST_SUITE_P(Lights, ConeLattices,
                                               std::get<0>(it.param));
                          });
 
-/// Triangles near a light point of a sphere, with an edge through the point within float rounding, far from zero under
-/// a small light: rounding of the point is the largest error there. Prints the share of its bound that is used.
+/// Triangles near a light point of a sphere, with an edge through the point up to float rounding, under a small light
+/// far from the origin: rounding of the point is the largest error there. Prints the share of its bound that is used.
 class AimedSpheres : public tests::DeviceTest, public testing::WithParamInterface<tests::MaskMethod> {
  protected:
-  /// `in_disk`: triangles through the light point itself, in the disk that the view sample sees up to a hundredth.
+  /// With `in_disk`, triangles go through the light point itself and lie, up to a hundredth, in the disk that the view
+  /// sample sees.
   static void run(visibility::Method& method, bool in_disk);
 };
 
 void AimedSpheres::run(visibility::Method& method, bool in_disk) {
-  constexpr double kPlantedCut = 0.01;  // of tests/planted_faults
+  constexpr double kPlantedCut = 0.01;  // the factor in tests/planted_faults
   PairCounts counts;
   double used = 0;
   for (std::uint32_t seed = 0; seed < 20; ++seed) {
@@ -123,7 +123,7 @@ void AimedSpheres::run(visibility::Method& method, bool in_disk) {
     std::uniform_real_distribution<double> real(-1, 1);
     const auto vector = [&] { return glm::dvec3(real(random), real(random), real(random)); };
     scenes::Scene scene;
-    // Keeps the origin of scene floats at zero, whatever is added.
+    // Keeps the origin of scene floats at zero, whatever else is added.
     scenes::Object& anchor =
         tests::add_object(scene, "anchor", {{glm::dvec3(-1024), glm::dvec3(1024, 1024, -1024), glm::dvec3(1024)}});
     anchor.casts_shadow = anchor.receives_shadow = false;
@@ -149,7 +149,7 @@ void AimedSpheres::run(visibility::Method& method, bool in_disk) {
       used = std::max(used, glm::length(glm::dvec3(points[j]) - place) / (2 * 0x1p-24 * reach));
       const double share = in_disk ? 1 : 0.6 + 0.3 * real(random);
       const glm::dvec3 at = glm::dvec3(p) + share * (glm::dvec3(points[j]) - glm::dvec3(p));
-      // Casters are flat in a disk, so that much of one is within rounding of the disk's plane.
+      // Casters are nearly flat in a disk, so that much of a caster is within rounding of the disk's plane.
       const auto axis = [&] {
         const glm::dvec3 x = vector() + 0x1p-30, n = glm::normalize(glm::cross(disk.u, disk.v));
         return glm::normalize(in_disk ? x - (1 - 0.02 * real(random)) * glm::dot(x, n) * n : x);
@@ -178,7 +178,7 @@ TEST_P(AimedSpheres, EveryPairOfTheDiskIsTheExactDecision) {
   run(*GetParam().make(device(), {}), true);
 }
 
-/// A sphere that holds a ball of many triangles, with cracks: bits are exact, and few pairs are left to exact
+/// A sphere light that contains a ball of many triangles, with cracks: bits are exact, and few pairs are left to exact
 /// predicates.
 TEST_P(AimedSpheres, FewPairsAreOpenWhereASphereHoldsCasters) {
   const auto method = GetParam().make(device(), {});
@@ -216,7 +216,8 @@ TEST_P(AimedSpheres, FewPairsAreOpenWhereASphereHoldsCasters) {
 INSTANTIATE_TEST_SUITE_P(Of, AimedSpheres, testing::ValuesIn(tests::kConeMethods),
                          [](const auto& it) { return std::string(it.param.name); });
 
-/// The message about a wrong bit has the light point on the disk that p sees of a sphere, or the direction of a sun.
+/// The message about a wrong bit gives the light point: on the disk that p sees of a sphere, or as the direction of a
+/// sun.
 TEST(WrongBits, AreToldWithTheirLightPoints) {
   for (const scenes::LightShape& shape :
        {scenes::LightShape(scenes::Sphere{{0, 4, 0}, 0.5}), scenes::LightShape(scenes::Sun{{0, -1, 0}, 10})}) {

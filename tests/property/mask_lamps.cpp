@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every pair of lamps with panels in, near and through their planes, with mixed magnitudes and needles: the mask
-// methods against the exact decision, without tolerance.
+// Compares every pair of the mask methods with the exact decision, without tolerance: lamps with panels in, near and
+// through their planes, with mixed magnitudes and needles.
 
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/volumes/light_span.hpp"
@@ -55,9 +55,9 @@ class MaskLamps : public tests::DeviceTest,
 TEST_P(MaskLamps, EveryPairIsTheExactDecision) {
   look(0, std::get<1>(GetParam()).on_device() ? 12 : 25);
 }
-/// Found among thousands of lamps: a corner of the light whose depth was counted at a light sample that had been
-/// rounded again; a panel in the plane of a tilted light, whose samples are off that plane by a rounding each (wrong
-/// where touched light samples are not left to the exact decision).
+/// Cases found among thousands of lamps: a corner of the light whose depth was counted at a light sample that had been
+/// rounded again; a panel in the plane of a tilted light, whose samples are off that plane by a rounding error each
+/// (wrong if touched light samples are not left to the exact decision).
 TEST_P(MaskLamps, WhatWasWrong) {
   if (std::get<0>(GetParam()) != Hostility::panels) return;
   look(5983, 3);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The mask methods where nothing is in general position: every pair equals the exact decision, without tolerance.
+// Tests the mask methods on lattices, where nothing is in general position: every pair equals the exact decision,
+// without tolerance.
 
 #include "tests/agreement/volumes/light_span.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -18,7 +19,7 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// Puts the origin of the scene floats at zero, so that numbers next to zero stay as small as they are.
+/// Puts the origin of the scene floats at zero, so that tiny numbers are not rounded.
 void anchor(scenes::Scene& scene) {
   tests::add_object(scene, "anchor", {{glm::dvec3(-4), glm::dvec3(4, 4, -4), glm::dvec3(4)}}).casts_shadow = false;
 }
@@ -40,11 +41,11 @@ TEST_P(LatticeSoups, EveryPairIsTheExactDecision) {
   EXPECT_GT(counts.behind, counts.pairs / 100);
 }
 
-/// The device has no validation layer, which takes most of the time and reports nothing about these soups that it does
-/// not report about the sixty.
+/// The device runs without the validation layer, which takes most of the time and reports nothing here that it does not
+/// report about the sixty soups of the quick test.
 class LatticeSoupsFull : public testing::TestWithParam<std::tuple<int, tests::MaskMethod>> {};
 
-/// 60,000 soups for each engine of each method.
+/// Tests 60,000 soups for each engine of each method.
 TEST_P(LatticeSoupsFull, EveryPairIsTheExactDecision) {
   const auto [range, under_test] = GetParam();
   const render::Device device(render::DeviceOptions{});
@@ -54,8 +55,8 @@ TEST_P(LatticeSoupsFull, EveryPairIsTheExactDecision) {
   tests::expect_all_kinds(counts);
 }
 
-/// Found among tens of thousands of soups: an outline along the light's left side, p inside another triangle within
-/// rounding, an edge at p's own height; light samples stored off the light's plane, which a triangle touches.
+/// Cases found among tens of thousands of soups: an outline along the light's left side; p inside another triangle
+/// within rounding; an edge at p's own height; light samples stored off the light's plane, which a triangle touches.
 TEST_P(HardScenes, LatticeSoupsThatWereWrong) {
   tests::MethodsByLayout methods([&] { return GetParam().make(device(), {}); });
   static constexpr std::pair<int, std::uint32_t> kSoups[] = {{1, 335},   {1, 788},   {1, 873},  {1, 10790},
@@ -75,14 +76,14 @@ INSTANTIATE_TEST_SUITE_P(Range, LatticeSoupsFull,
                          testing::Combine(testing::Values(1, 2, 4), testing::ValuesIn(tests::kMaskMethods)),
                          name_of_soups);
 
-/// A method may refuse a light that float32 cannot span together with the scene; it may not be wrong about it.
+/// A method may refuse a light that float32 cannot represent together with the scene; it must not give wrong answers.
 std::optional<tests::Masks> run_or_refuse(visibility::Method& method, const SceneFloats& floats, const Light& light,
                                           const ViewSamples& samples) {
   return tests::unless_too_far_apart(floats, light, [&] { return tests::run(method, floats, light, samples); });
 }
 
-/// Needles so thin that a double cross product of their edges is mostly rounding, in scenes of mixed magnitudes: as
-/// carriers, as occluders, far from and at the origin.
+/// Needles so thin that a double cross product of their edges is mostly rounding error, in scenes of mixed magnitudes:
+/// as carriers and as occluders, far from the origin and at it.
 TEST_P(HardScenes, NeedlesOfMixedMagnitudes) {
   const auto method = GetParam().make(device(), {});
   PairCounts counts;
@@ -99,13 +100,13 @@ TEST_P(HardScenes, NeedlesOfMixedMagnitudes) {
       switch (random() % 3) {
         case 0:
           needles.push_back({a, b, 2.0F * b});
-          break;  // nearly on a line through zero
+          break;  // corners nearly on a line through zero
         case 1:
           needles.push_back({b, glm::dvec3(b) + a, -point()});
-          break;  // one short edge
+          break;  // one edge is short
         default:
           needles.push_back({b, -b, a});
-          break;  // flat: its third corner at the middle
+          break;  // flat: the third corner is near the middle
       }
     }
     tests::add_object(scene, "needles", needles);
@@ -121,7 +122,8 @@ TEST_P(HardScenes, NeedlesOfMixedMagnitudes) {
   EXPECT_GT(counts.blocked, counts.pairs / 1000);
 }
 
-/// Coordinates over forty powers of two: a cluster of tiny triangles inside large ones, with the light near either.
+/// Coordinates over forty powers of two: a cluster of tiny triangles inside large ones, with the light near either of
+/// them.
 TEST_P(HardScenes, MagnitudesFarApart) {
   const auto method = GetParam().make(device(), {});
   PairCounts counts;
@@ -162,7 +164,7 @@ TEST_P(HardScenes, MagnitudesFarApart) {
   EXPECT_GT(counts.blocked, counts.pairs / 100);
 }
 
-/// A light as large and as far away as the sun: the scene is a speck beside it.
+/// A light as large and as far away as the sun: compared with it the scene is a speck.
 TEST_P(HardScenes, LightsFarAway) {
   const auto method = GetParam().make(device(), {});
   PairCounts counts;
@@ -194,7 +196,7 @@ TEST_P(HardScenes, LightsFarAway) {
   EXPECT_GT(counts.blocked, counts.pairs / 10);
 }
 
-/// A picture with nothing in it, and one where nothing casts shadow.
+/// An empty picture, and one in which nothing casts shadow.
 TEST_P(HardScenes, NothingToHideTheLight) {
   for (const bool empty_view : {false, true}) {
     scenes::Scene scene;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// edge-scatter on both engines under lights whose samples form no rows: every pair equals the exact decision, without
-// tolerance.
+// Tests edge-scatter on both engines under lights whose samples form no rows: every pair equals the exact decision,
+// without tolerance.
 
 #include "tests/agreement/hostile_lamps.hpp"
 #include "tests/agreement/lattice.hpp"
@@ -27,7 +27,7 @@ using tests::PairCounts;
 using tests::PointLight;
 
 constexpr std::uint32_t kMostSamples = 70;
-/// More than 256 light points are in rows of several tiles each on vector units.
+/// More than 256 light points are stored in rows of several tiles each on vector units.
 constexpr std::uint32_t kMany = 400;
 
 constexpr std::array kEngines{tests::kEdgeScatter, tests::kNativeEdgeScatter};
@@ -60,8 +60,8 @@ TEST_P(PointSoups, EveryPairIsTheExactDecision) {
   const PairCounts counts = look(device(), 0, 25);
   tests::expect_all_kinds(counts);
 }
-/// Looks at 60,000 soups under each kind of light, with each engine; on a device without the validation layer, which
-/// takes most of the time and reports nothing about these soups that it does not report about the 25.
+/// Tests 60,000 soups for each kind of light and each engine, on a device without the validation layer, which takes
+/// most of the time and reports nothing here that it does not report about the 25 soups of the quick test.
 TEST_P(PointSoups, EveryPairFull) {
   constexpr std::uint32_t kSoups = 20'000, kAtOnce = 1000;
   const auto& [range, kind, engine] = GetParam();
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Under, PointSoups,
                                               std::get<0>(it.param));
                          });
 
-/// Panels in, near and through the light's plane; mixed magnitudes; needles.
+/// Panels in, near and through the light's plane, with mixed magnitudes and needles.
 class PointLamps : public tests::DeviceTest,
                    public testing::WithParamInterface<std::tuple<tests::Hostility, PointLight, tests::MaskMethod>> {
  protected:
@@ -131,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(Under, PointLamps,
 class PointCounts : public tests::DeviceTest,
                     public testing::WithParamInterface<std::tuple<PointLight, tests::MaskMethod>> {};
 
-/// Tiles that are not full, rows of tiles of unequal length, masks that end within a word; any number of threads and
-/// any tiles of the picture.
+/// Tiles that are not full, rows with different numbers of tiles, masks that end within a word; any number of threads
+/// and any tiles of the picture.
 TEST_P(PointCounts, AnyNumberOfLightSamples) {
   std::mt19937 random(7);
   scenes::Scene scene;
@@ -163,8 +163,9 @@ TEST_P(PointCounts, AnyNumberOfLightSamples) {
     EXPECT_EQ(masks.visibility, again.visibility) << count;
   }
 }
-/// Outlines of edges shorter than a tile, as dense meshes have, of which some are beside all light samples: in a corner
-/// of the rectangle around a disk, where segments to tiles pass. Against another method that promises every bit.
+/// Outlines made of edges shorter than a tile, as in dense meshes. Some outlines pass outside all light samples: in a
+/// corner of the rectangle around a disk, where segments to tiles pass. The reference is another method that promises
+/// every bit.
 TEST_P(PointCounts, ShortEdges) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> real(-1, 1);

@@ -12,7 +12,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// Corners on a tiny lattice, so that collinear, repeated and crossing ones are normal.
+/// Draws corners from a tiny lattice, so that collinear, repeated and crossing ones are normal.
 std::vector<glm::dvec3> lattice_polygon() {
   const auto corner = rc::gen::apply([](int x, int y, int z) { return glm::dvec3(x, y, z); }, rc::gen::inRange(0, 4),
                                      rc::gen::inRange(0, 4), rc::gen::inRange(0, 2));
@@ -25,8 +25,8 @@ RC_GTEST_PROP(Polygon, AlwaysNMinusTwoTrianglesWithTheSameBoundary, ()) {
   std::vector<Triangle> triangles;
   import::triangulate_polygon(corners, triangles);
   RC_ASSERT(triangles.size() == corners.size() - 2);
-  // The vector area is an integral over the boundary alone (Stokes), so every triangulation has the same; on the
-  // lattice it is exact.
+  // The vector area depends only on the boundary (Stokes), so it is the same for every triangulation; on the lattice it
+  // is exact.
   glm::dvec3 whole(0), parts(0);
   for (std::size_t i = 0; i < corners.size(); ++i) whole += glm::cross(corners[i], corners[(i + 1) % corners.size()]);
   for (const auto& [a, b, c] : triangles) {
@@ -37,7 +37,7 @@ RC_GTEST_PROP(Polygon, AlwaysNMinusTwoTrianglesWithTheSameBoundary, ()) {
 }
 
 TEST(Polygon, EarsOfASimplePolygonAllLieInside) {
-  // A comb: 2·n+2 corners, concave at every second one. Inside means that no triangle turns the other way.
+  // A comb of 2·n+2 corners, every second of them concave. No triangle may be wound the other way: then all lie inside.
   for (int teeth = 1; teeth < 20; ++teeth) {
     std::vector<glm::dvec3> corners{{0, 0, 3}, {teeth, 0, 3}};
     for (int i = teeth; i-- > 0;) {
@@ -51,13 +51,13 @@ TEST(Polygon, EarsOfASimplePolygonAllLieInside) {
   }
 }
 
-/// Corners in the middle of straight sides, exactly and as single precision leaves them: no triangle is without area or
-/// a sliver, whichever corner comes first.
+/// Corners in the middle of straight sides, exact or rounded to single precision: no triangle has zero area or is a
+/// sliver, whichever corner comes first.
 TEST(Polygon, StraightCornersMakeNoSlivers) {
   const std::vector<std::vector<glm::dvec3>> outlines = {
       {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}},  // a square
-      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {0, 3, 0}},  // one side of a triangle
-      {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 1, 0}},                        // a "quad"
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {0, 3, 0}},  // a triangle with corners on one side
+      {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0, 1, 0}},                        // a triangle given as a "quad"
       {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 2, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0.5, 0}}};  // an L
   for (const double angle : {0.0, 0.3, 1.1}) {
     for (std::vector<glm::dvec3> outline : outlines) {
@@ -84,7 +84,7 @@ TEST(Polygon, StraightCornersMakeNoSlivers) {
   }
 }
 
-/// Triangulation takes linear time: a square with a hundred thousand corners on one side.
+/// Triangulation takes linear time for a square with a hundred thousand corners on one side.
 TEST(Polygon, ManyStraightCorners) {
   std::vector<glm::dvec3> outline;
   for (int i = 0; i < 100'000; ++i) outline.emplace_back(i, 0, 0);
@@ -102,7 +102,7 @@ TEST(Polygon, ManyStraightCorners) {
   EXPECT_EQ(sum, 2 * 5 * 99'999.0);
 }
 
-/// An ear looks at what is near it: a star of twenty thousand corners, each second one concave.
+/// The test of an ear looks only at corners near it: a star of twenty thousand corners, every second one concave.
 TEST(Polygon, ManyConcaveCorners) {
   constexpr int kCorners = 20'000;
   std::vector<glm::dvec3> outline;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every pair of a small picture, ray caster against the exact decision: away from exact zeros Embree's robust mode is
-// off by rounding alone.
+// Compares every pair of a small picture between the ray caster and the exact decision: away from exact zeros, Embree's
+// robust mode differs only by rounding.
 
 #include "tests/unit/ray_traced_masks.hpp"
 #include "tests/unit/visibility/soups.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene scaled by a power of two asks the ray caster the same questions, and floats hold it exactly: every bit stays,
-// over all of float32's range. What Embree's float32 cannot hold is refused, or decided exactly.
+// Scaling a scene by a power of two is exact in floats and changes no answer: every bit of the ray caster's masks
+// stays, over the whole range of float32. Scenes that do not fit Embree's float32 are refused, or decided exactly.
 
 #include "base/error.hpp"
 #include "reference/plain_rays.hpp"
@@ -22,7 +22,7 @@ namespace {
 using tests::Masks;
 using tests::Stage;
 
-constexpr int kStep = 8;  // coordinates are multiples of 2⁻⁸: subnormal floats hold them too
+constexpr int kStep = 8;  // coordinates are multiples of 2⁻⁸, which subnormal floats can hold too
 
 glm::vec3 snapped(const glm::vec3& x) {
   return glm::vec3(glm::round(glm::dvec3(x) * std::ldexp(1.0, kStep))) * std::ldexp(1.0F, -kStep);
@@ -99,7 +99,7 @@ TEST_P(Scales, ChangeNoBit) {
   }
   EXPECT_GT(part, stage.samples.size() / 20) << "a scene without penumbrae shows little";
   const std::vector<float> plain = plain_visibility(stage);
-  // A sphere's points are rounded for each view sample: not among the subnormal floats.
+  // A sphere's points are rounded for each view sample, which would change them among the subnormal floats.
   const int lowest = stage.light.kind == visibility::LightKind::sphere ? -100 : -149 + kStep;
   for (int exponent = lowest; exponent <= 120; exponent += 9) {
     const Stage other = scaled(stage, exponent);
@@ -127,7 +127,8 @@ TEST(ScaleLimits, TrianglesTooSmallForTheSceneAreRefused) {
   scenes::Scene scene = soup_at_scale(0);
   for (const double size : {0x1p-60, 0x1p-80}) {
     scenes::Scene with_dust = scene;
-    tests::add_object(with_dust, "anchor", {{glm::dvec3(-4), glm::dvec3(4, 4, -4), glm::dvec3(4)}});  // origin at 0
+    tests::add_object(with_dust, "anchor",
+                      {{glm::dvec3(-4), glm::dvec3(4, 4, -4), glm::dvec3(4)}});  // keeps the origin at 0
     tests::add_object(with_dust, "dust", {{glm::dvec3(0), glm::dvec3(size, 0, 0), glm::dvec3(0, size, 0)}});
     const Stage stage(with_dust, 8, 8);
     if (size > 0x1p-70) {
@@ -139,7 +140,7 @@ TEST(ScaleLimits, TrianglesTooSmallForTheSceneAreRefused) {
   }
 }
 
-/// Rays that Embree would lose are decided exactly: a light next to nothing away from a view sample, in a scene of
+/// Rays that Embree would lose are decided exactly: here the light is extremely close to a view sample, in a scene of
 /// small triangles.
 TEST(ScaleLimits, RaysTooShortAreDecidedExactly) {
   constexpr float kSize = 0x1p-58F;

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the module says to arguments of wrong types: each public function, each parameter. module.py runs these tests."""
+"""Tests the module's errors for arguments of wrong types: each public function, each parameter. module.py runs these
+tests."""
 
 import copy
 import decimal
@@ -21,7 +22,7 @@ FACE = np.array([[0, 1, 2]])
 
 
 def small_scene():
-    """A floor that a square light sees, and a board between them."""
+    """Returns a floor under a square light, with a board between them."""
     return {
         "size": [8, 6],
         "camera": {"eye": [0, 0.8, 4], "target": [0, 0, 0]},
@@ -52,7 +53,7 @@ class Arguments(unittest.TestCase):
         renderer = penumbra.Renderer(scene)
         render = renderer.render
         nan = float("nan")
-        huge = np.broadcast_to(np.zeros(3), (1 << 36, 3))  # of 24 bytes of memory
+        huge = np.broadcast_to(np.zeros(3), (1 << 36, 3))  # takes only 24 bytes of memory
         rows = [
             # scenes as dicts
             (usage, "/meshes/0/vertices: expected numbers.*texts", lambda: parse(with_mesh(vertices=[["0", "0", "0"]] * 3))),
@@ -164,7 +165,7 @@ class Arguments(unittest.TestCase):
                 with self.assertRaisesRegex(error, says) as raised:
                     call()
                 self.assertNotIn("incompatible function arguments", str(raised.exception))
-        self.assertEqual(renderer.render().size, (8, 6))  # it can still be used
+        self.assertEqual(renderer.render().size, (8, 6))  # the renderer can still be used
 
     def test_answers_of_own_methods_have_a_type(self):
         answer = {}
@@ -226,7 +227,7 @@ class Arguments(unittest.TestCase):
                 stream.write(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
             messages = []
             scene = penumbra.load(file)
-            self.assertGreater(len(scene.warnings), 0)  # about the studio
+            self.assertGreater(len(scene.warnings), 0)  # a warning about the added studio
             penumbra.inspect(file, log=lambda level, text: messages.append(text))
             penumbra.inspect(os.fsdecode(file))
             with open(file, "wb") as stream:
@@ -235,7 +236,7 @@ class Arguments(unittest.TestCase):
                 penumbra.load(file)
 
     def test_no_call_ends_in_an_error_of_another_kind(self):
-        """Every parameter of every public function gets values that it may not be meant for."""
+        """Every parameter of every public function gets values for which it may not be meant."""
         odd = [None, True, 3, -1, 2.5, float("nan"), float("inf"), 10 ** 30, 1j, "", "x", "\ud800", "a\0b", b"x", [], [3], [None], ["x", 3],
                [[1, 2], [3]], (1, 2, 3), {}, {"x": 1}, {3: [object()]}, {1, 2}, object(), lambda *_: None, np.zeros(0), np.zeros((2, 2)),
                np.zeros(3, complex), np.array(["x"]), np.array([None]), np.float32(0.5), np.datetime64("2020-01-01"), penumbra.Instance("x", 3)]

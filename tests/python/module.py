@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python module against the program and against itself: module.py PENUMBRA SOURCE."""
+"""Compares the Python module with the program and with itself: module.py PENUMBRA SOURCE."""
 
 import copy
 import json
@@ -31,7 +31,7 @@ def program(*arguments):
 
 
 def board_over_floor():
-    """A scene by hand: a square light at height 2 over a floor, half of it hidden by a board."""
+    """Returns a scene made by hand: a square light at height 2 over a floor, half of it hidden by a board."""
     return {
         "camera": {"eye": [0, 0.8, 4], "target": [0, 0, 0]},
         "meshes": [
@@ -44,7 +44,8 @@ def board_over_floor():
 
 
 def camp(instances):
-    """Tents on the floor: by add_instance, or as a file says it, with arrays."""
+    """Returns tents on the floor, to be placed by add_instance or, with `instances`, placed as in a file, with
+    arrays."""
     room = board_over_floor()
     tent = np.array([[-0.3, 0, -0.2], [0.3, 0, -0.3], [0, 0, 0.3], [0, 0.5, 0]])
     faces = np.array([[0, 1, 3], [1, 2, 3], [2, 0, 3]])
@@ -56,7 +57,7 @@ def camp(instances):
 
 
 def crossed_segments(question):
-    """Returns which segments from p to the light's points no triangle meets, in double: (K, N)."""
+    """Returns which segments from p to the light's points meet no triangle, in double: (K, N)."""
     ends = question.points_of_pixel if question.points_of_pixel is not None else question.light["points"][None]
     p = question.p[:, None].astype(float)
     segment = ends - p if question.light["kind"] != "sun" else np.broadcast_to(ends, (len(p), *ends.shape[1:])).astype(float)
@@ -78,7 +79,7 @@ def crossed_segments(question):
 
 
 class Instances(unittest.TestCase):
-    """Meshes that are there many times."""
+    """Meshes with many instances."""
 
     def test_instances_are_those_of_a_file_and_move(self):
         places = []
@@ -109,7 +110,7 @@ class Instances(unittest.TestCase):
 
 
 class OwnMethod(unittest.TestCase):
-    """Methods that Python functions answer."""
+    """Methods implemented by Python functions."""
 
     def test_masks_of_a_function_are_those_of_exact_methods(self):
         penumbra.add_method("segments", crossed_segments, masks=True, family="geometry", exact_for="all but rounding")
@@ -120,7 +121,7 @@ class OwnMethod(unittest.TestCase):
             own = penumbra.render(scene, size=(24, 18), method="segments", light_samples=49)
             exact = penumbra.render(scene, size=(24, 18), method="edge-scatter", light_samples=49)
             self.assertEqual(own.masks.shape, (18, 24, 49))
-            # Rows of light samples that end on the board's edge exactly are rounding's affair: at most one row of seven.
+            # Rows of light samples that end exactly on the board's edge depend on rounding: at most one row of seven.
             self.assertLess((own.masks != exact.masks).mean(), 0.002, light)
             self.assertGreater((exact.masks != exact.masks[0, 0]).mean(), 0.01)
             np.testing.assert_array_equal(own.V, own.masks.mean(-1, dtype=float).astype(np.float32))
@@ -222,13 +223,13 @@ class Module(unittest.TestCase):
         self.assertIsNone(penumbra.render(scene, **{**options, "size": (8, 8)}, masks=False).masks)
 
     def test_exact_half_shadow(self):
-        # The plane x = 0 through p divides the light below the board's edge: V by the similar triangles of the section,
-        # for the board is as long as the scene. p at x sees the light from x' = -x (the edge at half height mirrors
-        # it).
+        # The plane x = 0 through p divides the light below the board's edge. V follows from the similar triangles in
+        # the cross-section, because the board is as long as the scene. p at x sees the light up to x' = -x (the edge at
+        # half height mirrors it).
         picture = penumbra.render(board_over_floor(), size=(64, 64))
         on_floor = (picture.id < 2) & (np.abs(picture.P[..., 0]) < 0.45) & (np.abs(picture.P[..., 2]) < 1)
         self.assertGreater(on_floor.sum(), 50)
-        expected = 0.5 - picture.P[..., 0] / 1.0  # the light is from -0.5 to 0.5: it is seen from -0.5 to -x
+        expected = 0.5 - picture.P[..., 0] / 1.0  # the light is from -0.5 to 0.5, and p sees it from -0.5 to -x
         np.testing.assert_allclose(picture.V[on_floor], expected[on_floor], atol=2e-6)  # x in float32, twice
 
     def test_arrays(self):
@@ -241,11 +242,11 @@ class Module(unittest.TestCase):
         np.testing.assert_array_equal(picture.lights["sun"].V, picture.V)
         v = picture.V
         first = v[0, 0]
-        del picture  # the array keeps its memory
+        del picture  # the array keeps its memory alive
         self.assertEqual(v[0, 0], first)
         with self.assertRaises(ValueError):
             v[0, 0] = 2  # read-only
-        self.assertIsNot(v.base, None)  # a view, no copy
+        self.assertIsNot(v.base, None)  # a view, not a copy
 
     def test_kept_renderer(self):
         renderer = penumbra.Renderer(penumbra.load(LIGHTS))
@@ -268,7 +269,7 @@ class Module(unittest.TestCase):
         self.assertEqual(renderer.scene.light("sky")["half"], True)
         v = renderer.render(size=(24, 16), light="sky").V
         self.assertGreater(((v > 0) & (v < 1)).mean(), 0.1)
-        renderer.set_light("sky", rotate=30)  # of one radiance that changes nothing
+        renderer.set_light("sky", rotate=30)  # turning a dome of constant radiance changes nothing
         np.testing.assert_array_equal(renderer.render(size=(24, 16), light="sky").V, v)
         with self.assertRaisesRegex(penumbra.InputError, "none.hdr"):
             renderer.set_light("sky", image="none.hdr")
@@ -285,7 +286,7 @@ class Module(unittest.TestCase):
         rows = [0.1, 0, 0.7, 1.3, 0, -0.9, 0.2, 0.6, -0.3, 0, 0.1, 0.3, 0, 0, 0, 1]
         placings = [{"transform": turn}, {"transform": rows}, {"transform": {"scale": [-1.1, 1, 1]}}, {"fit": {"height": 0.7}},
                     {"instances": [rows, {"transform": turn}, {"translate": [0.7, 0, 0]}]}]
-        vertices = np.array([[0, 0, 0], [9, 9, 9], [0.1, 0, 0.3], [0.7, 0.9, 0], [0.3, 1, 0.7]])  # one that no face has
+        vertices = np.array([[0, 0, 0], [9, 9, 9], [0.1, 0, 0.3], [0.7, 0.9, 0], [0.3, 1, 0.7]])  # no face uses the second one
         faces = np.array([[0, 2, 3], [0, 3, 4]])
         for placing in placings:
             scene = board_over_floor()
@@ -302,7 +303,7 @@ class Module(unittest.TestCase):
                 saved = [pathlib.Path(folder, name).read_bytes() for name in ("file.json", "given.json")]
             self.assertEqual(saved[0], saved[1], placing)
             self.assertIn("left out 1 vertices", " ".join(given.warnings))
-            if "instances" in placing:  # the mesh's own vertices, the one that no face has among them
+            if "instances" in placing:  # these have the mesh's own vertices, including the unused one
                 del scene["meshes"][0]["emits"]
                 scene["meshes"][0].pop("triangles")
                 given = penumbra.Scene.from_dict({**scene, "meshes": [{"vertices": vertices, "faces": faces, **placing}]})
@@ -361,10 +362,10 @@ class Module(unittest.TestCase):
         self.assertEqual(wedges["violations"], [])
         self.assertGreater(len(wedges["wedges"]), 0)
         listed = json.loads(program("methods", "--json"))["methods"]
-        self.assertEqual(penumbra.methods()[:len(listed)], listed)  # then those that other tests added
+        self.assertEqual(penumbra.methods()[:len(listed)], listed)  # methods that other tests added come after these
 
     def test_works_beside_other_threads(self):
-        # The interpreter's lock is free while a picture is made: another thread counts on.
+        # The interpreter's lock is released while a picture is made: another thread can count.
         count, stop = [0], threading.Event()
 
         def counting():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the code of docs/python.md from top to bottom, as a reader would: page.py PENUMBRA SOURCE. Its last lines say what must
-have come of it."""
+"""Runs the code of docs/python.md from top to bottom, as a reader would: page.py PENUMBRA SOURCE. The last lines check
+the results."""
 
 import os
 import pathlib

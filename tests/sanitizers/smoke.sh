@@ -1,10 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The program under AddressSanitizer and UndefinedBehaviorSanitizer: every method on the shipped scenes, and every command
-# once. For CI, where the whole suite under sanitizers (preset asan-ubsan, half an hour of two cores) is too long.
+# Runs the program under AddressSanitizer and UndefinedBehaviorSanitizer: every method on the shipped scenes, and every
+# command once. For CI, where the whole suite under sanitizers (preset asan-ubsan, half an hour of two cores) would take
+# too long.
 #   smoke.sh SOURCE WORK          builds `penumbra` and `penumbra-import` into WORK, and runs them there
 #   smoke.sh SOURCE WORK run      runs what was built
-# Any report is a failure, and so is an exit code other than 0. terrain-1m is left out: two million triangles take minutes here.
+# Any report is a failure, and so is an exit code other than 0. terrain-1m is left out: its two million triangles would
+# take minutes here.
 set -euo pipefail
 source=$(cd -- "$1" && pwd)
 mkdir -p -- "$2"
@@ -12,7 +14,7 @@ work=$(cd -- "$2" && pwd)
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 
 if [[ ${3:-} != run ]]; then
-  # Little optimised, so that it compiles sooner.
+  # With little optimisation, so that it compiles faster.
   cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DPENUMBRA_SANITIZE=address,undefined \
     -DPENUMBRA_BENCH=OFF -DPENUMBRA_TESTS=OFF "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1 -DNDEBUG" >"$work/configure.log"
   ninja -C "$work/build" penumbra penumbra-import
@@ -21,7 +23,7 @@ export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1:detect_stack_use_after
 export LSAN_OPTIONS=suppressions=$here/leak.supp:print_suppressions=0 UBSAN_OPTIONS=print_stacktrace=1
 
 failed=0
-# check NAME ARGUMENTS…: a run that must end with 0 and without a report.
+# check NAME ARGUMENTS…: runs the program, which must end with 0 and without a report.
 check() {
   local name=$1 begin=$SECONDS code=0
   shift
@@ -40,7 +42,7 @@ for scene in "$source"/scenes/*.json; do
   [[ $name == terrain-1m || $name == *.schema ]] && continue
   check "$name" compare "$scene" -o "$work/$name" --methods all --method-option size=128 --size 16x16 --light-samples 16 \
     --reference-samples 16 --runs 1 --device cpu --png
-  # All lights, as areas and as samples of each kind.
+  # All lights, evaluated as areas and as samples of each kind.
   check "$name-areas" render "$scene" -o "$work/$name.exr" --size 24x16 --png "$work/$name.png" --stats "$work/$name-stats.json"
   check "$name-exact" render "$scene" -o "$work/$name.exr" --size 24x16 --method exact
 done

@@ -1,6 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The tests under ThreadSanitizer, with a TBB that is instrumented too: without it every loop would look like a race.
+# Runs the tests under ThreadSanitizer, with a TBB that is instrumented, too: otherwise every parallel loop would look
+# like a race.
 #   tests/sanitizers/thread.sh WORK [CTEST ARGS…]     default: -L quick -j2
 # Fetches Debian's source of TBB (that needs a deb-src line for apt), builds it and the project into WORK, once.
 set -euo pipefail

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests that all presets configure, and that everything compiles as `clang`, `fuzz`, `coverage` and a Debug build have it, without
-building them:
+"""Tests that all presets configure, and that everything compiles as in a `clang`, `fuzz`, `coverage` and Debug build,
+without building them:
 
     compilers.py SOURCE BUILD
 
-clang looks at all sources and their templates without making code of them. g++ does the same without optimisation, and compiles
-those of them that Highway compiles once a target, since what an intrinsic's immediate is shows when code is made, and there with
-precompiled headers alone. Sources are joined as run.sh joins them. BUILD must have been built: shaders embedded as headers are
-taken from there. Eight minutes of two cores."""
+clang checks all sources and their templates without generating code. g++ does the same without optimisation; sources
+that Highway compiles once for each target are fully compiled, since errors in an intrinsic's immediate appear only when
+code is generated, and only with precompiled headers. Sources are joined as run.sh joins them. BUILD must have
+been built: shaders embedded as headers are taken from there. Takes eight minutes of two cores."""
 
 import json
 import os
@@ -22,7 +22,7 @@ HIGHWAY = re.compile(rb"hwy/foreach_target\.h")
 
 
 def configure(source, build, name, *options):
-    """Compile commands of the sources, in a folder of its own; its embedded shaders are BUILD's."""
+    """Returns the compile commands of the sources, in a separate folder; the embedded shaders are those of BUILD."""
     folder = os.path.join(build, name)
     command = ["cmake", "-S", source, "-B", folder, "-G", "Ninja", "-DPENUMBRA_TESTS=ON", *options]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -38,7 +38,7 @@ def configure(source, build, name, *options):
 
 
 def presets_that_fail(source, build):
-    """Configures each preset that users may name. Returns how many cannot be."""
+    """Configures each preset that users may name. Returns how many fail."""
     with open(os.path.join(source, "CMakePresets.json")) as file:
         names = [preset["name"] for preset in json.load(file)["configurePresets"] if not preset.get("hidden")]
     failed = 0
@@ -56,7 +56,7 @@ def presets_that_fail(source, build):
 
 
 def make_generated(folder):
-    """Sources that the build writes itself: joined files include them."""
+    """Makes the sources that the build generates, because joined files include them."""
     targets = subprocess.run(["ninja", "-C", folder, "-t", "targets", "all"], stdout=subprocess.PIPE, text=True, check=True).stdout
     written = [line.partition(": ")[0] for line in targets.splitlines() if line.endswith(": CUSTOM_COMMAND")]
     sources = [name for name in written if name.endswith(".cpp") and not os.path.isabs(name)]
@@ -70,7 +70,7 @@ def is_highway(entry):
 
 
 def compile_one(entry, how):
-    """Compiles one file and keeps nothing of it. Returns what the compiler says."""
+    """Compiles one file and keeps no result. Returns the compiler's messages."""
     words = shlex.split(entry["command"])
     words[words.index("-o") + 1] = "/dev/null"
     done = subprocess.run([*words, *how], cwd=entry["directory"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -78,7 +78,7 @@ def compile_one(entry, how):
 
 
 def check(name, jobs):
-    """Compiles on all cores; says what fails. Returns how many do."""
+    """Compiles on all cores and prints failures. Returns how many there are."""
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
         failures = [text for text in pool.map(lambda job: compile_one(*job), jobs) if text]
     for text in failures:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""method_names.py SOURCE PROGRAM: fails where app/, bench/, compare/, session/ or a script of theirs names a shadow method in a string. What
-there is to know of a method comes from its family's table; only what users get if they choose nothing is named."""
+"""method_names.py SOURCE PROGRAM: fails if app/, bench/, compare/, session/ or a script of theirs names a shadow method
+in a string. Properties of methods must come from the tables of their families; only the methods that users get by
+default may be named."""
 
 import json
 import re
@@ -10,11 +11,11 @@ from pathlib import Path
 
 DEFAULTS = {("session/comparison/comparison.hpp", "raytrace"), ("bench/swimming.py", "exact"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
-# Measures what papers, or a page, say of methods by name.
+# Files that measure what papers, or a page, say of certain methods.
 OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py", "bench/scaling_tables.py"}
 
 
-# Shell lines that hold what users get if they choose nothing.
+# Shell lines with what users get by default.
 DEFAULT_LINES = re.compile(r"^read -ra \w+ <<<\"\$\{\d:-[^}]*\}\"$")
 
 
@@ -51,7 +52,7 @@ def main():
     root, program = Path(sys.argv[1]), sys.argv[2]
     listed = subprocess.run([program, "methods", "--json"], check=True, capture_output=True, text=True).stdout
     names = {method["name"] for method in json.loads(listed)["methods"]}
-    for planted in ('name == "pcss"', 'add("exact,pcss:size=8");'):  # what it looks for it finds
+    for planted in ('name == "pcss"', 'add("exact,pcss:size=8");'):  # tests that the search finds what it should
         assert any(is_named(literal, names) for literal in literals(planted)), planted
     assert any(is_named(literal, names) for literal in literals("for method in pcss exact; do", words=True))
     found = list(complaints(root, names))

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""one_definition.py SOURCE: no two files define different types of one name in one namespace.
+"""one_definition.py SOURCE: tests that no two files define different types of one name in one namespace.
 
-Compilers see one file at a time, and linkers keep one of all constructors and destructors of a name: with two types of that
-name, which of them run depends on what the optimiser made of calls, and on the order of linking. Anonymous namespaces and
-types inside types are left out; so are specialisations of others' templates, and the tests' sources (not their headers), which
-belong to programs of their own.
+Compilers see one file at a time, and linkers keep only one constructor or destructor of each name: if there are two
+types of that name, which of them runs depends on how the optimiser treated calls, and on the order of linking. Left out
+are anonymous namespaces, types inside types, specialisations of others' templates, and the tests' sources (not their
+headers), which belong to separate programs.
 """
 import collections
 import pathlib
@@ -13,7 +13,7 @@ import re
 import subprocess
 import sys
 
-# Files that are built in place of others with the same types.
+# Files that are built in place of others, with the same types.
 ALTERNATIVES = {"render/opengl/absent.cpp"}
 
 TOKEN = re.compile(
@@ -24,8 +24,9 @@ NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"
 
 
 def types_of(text):
-    """The qualified names of the types that a file defines outside anonymous namespaces, functions and other types."""
-    scopes = []  # of each brace that is open: a namespace's name, or None
+    """Yields the qualified names of the types that a file defines outside anonymous namespaces, functions and other
+    types."""
+    scopes = []  # one for each open brace: a namespace's name, or None
     for token in TOKEN.finditer(NOT_CODE.sub(" ", text)):
         if token[0] == "}":
             if scopes:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""spdx.py SOURCE [--write]: checks that every source file names its licence at its begin, in the form of SPDX. Prints the files that do not and
-exits with 1; with --write, adds the line to them. REUSE.toml names the licence of all other files."""
+"""spdx.py SOURCE [--write]: checks that every source file names its licence at its beginning, in the form of SPDX. Prints
+the files that do not, and exits with 1; with --write, adds the line to them. REUSE.toml names the licence of all other files."""
 import pathlib
 import subprocess
 import sys
@@ -12,7 +12,7 @@ HASHES = (".py", ".sh", ".cmake")
 
 
 def comment_of(path):
-    """The line as a comment of the file's language; None for a file of a kind that gets none."""
+    """Returns the line as a comment of the file's language; None for a kind of file that gets none."""
     if path.suffix in SLASHES:
         return f"// {LINE}\n"
     if path.suffix in HASHES or path.name == "CMakeLists.txt":
@@ -21,7 +21,7 @@ def comment_of(path):
 
 
 def source_files(source):
-    """The repository's files; of one unpacked from an archive, all but what was built."""
+    """Returns the repository's files or, if it was unpacked from an archive, all files except built ones."""
     names = subprocess.run(["git", "-C", source, "ls-files", "-z"], capture_output=True, text=True)
     if names.returncode == 0:
         return [source / name for name in names.stdout.split("\0") if name]

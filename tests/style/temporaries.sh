@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Views of temporaries that are gone: a range-for over what a temporary's function returned (C++20 keeps the last temporary of
-# a range alive, not those before it), and a span or string_view that is kept of a temporary that owns what it shows. Both
-# compile without a warning, and read a dead stack frame.
-#   temporaries.sh SOURCE BUILD [PATTERN]     of sources whose path it fits; default: all
-# By clang-query (packages.txt: clang-tidy's) over targets whose files are joined, as tidy.sh has them. BUILD must have been built.
+# Finds views of destroyed temporaries: a range-for over the result of a member function of a temporary (C++20 keeps
+# only the last temporary of a range alive, not those before it), and a span or string_view that is kept of a temporary
+# that owns the data. Both compile without a warning, and read a dead stack frame.
+#   temporaries.sh SOURCE BUILD [PATTERN]     in sources whose path matches PATTERN; default: in all
+# Uses clang-query (packages.txt: clang-tools) over targets whose files are joined, as in tidy.sh. BUILD must have been
+# built.
 set -euo pipefail
 source=$(cd -- "$1" && pwd) build=$(cd -- "$2" && pwd)
 query=$(command -v clang-query-14 || command -v clang-query || true)

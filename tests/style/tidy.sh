@@ -1,20 +1,21 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# clang-tidy over sources, and over the headers of ours that those include: any finding fails.
-#   tidy.sh SOURCE BUILD           all, compiled as g++ compiles them: a target's files as one
-#   tidy.sh SOURCE BUILD changed   what this branch changed since it left its upstream; on the upstream itself the last commit
-#   tidy.sh SOURCE BUILD PATTERN   sources whose path it fits, each alone
-# A header is looked at through the sources that include it; each finding is printed once. BUILD may have g++'s precompiled
-# headers, which clang-tidy cannot use: how sources are compiled without them is asked of CMake in BUILD/tidy. Nothing is compiled
-# there; shaders embedded as headers are BUILD's, so it must have been built. Exit 77: nothing to look at. (base's fifteen files
-# took 11 CPU s as one, fourteen of other rooms 140 each alone.)
+# Runs clang-tidy over sources, and over those of our headers that they include; fails on any finding.
+#   tidy.sh SOURCE BUILD           all sources, joined as for g++: a target's files as one
+#   tidy.sh SOURCE BUILD changed   sources that this branch changed since it left its upstream; on the upstream itself,
+#                                  those of the last commit
+#   tidy.sh SOURCE BUILD PATTERN   sources whose path matches PATTERN, each alone
+# A header is checked through the sources that include it; each finding is printed once. BUILD may have g++'s
+# precompiled headers, which clang-tidy cannot use, so CMake makes the compile commands without them in BUILD/tidy.
+# Nothing is compiled there; shaders embedded as headers are those of BUILD, so it must have been built. Exit 77:
+# nothing to check. (The fifteen files of base took 11 CPU s as one; fourteen of other rooms took 140 s each, alone.)
 set -euo pipefail
 source=$(cd -- "$1" && pwd) build=$(cd -- "$2" && pwd) what=${3:-all}
 most=6  # of the changed sources: what a test can take that runs beside others
 tidy=$(command -v clang-tidy-14 || command -v clang-tidy || true)
 [[ $tidy ]] || { echo 'style: clang-tidy is not installed (packages.txt)' >&2; exit 1; }
 
-# The sources that changed, and of a changed header one source that includes it.
+# The sources that changed, and for a changed header one source that includes it.
 changed_sources() {
   local base file
   base=$(git -C "$source" merge-base HEAD '@{upstream}' 2>/dev/null || true)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""whole.py SOURCE: checks that no text has the marks that an unfinished merge leaves, and that every Python file parses. Prints the places that do
-not and exits with 1."""
+"""whole.py SOURCE: checks that no text has conflict marks of an unfinished merge, and that every Python file parses.
+Prints the places that fail and exits with 1."""
 import pathlib
 import re
 import sys

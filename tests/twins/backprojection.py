@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Backprojection methods against twins in numpy (the module penumbra must be found).
+"""Compares backprojection methods with twins in numpy (the module penumbra must be found).
 
-Each twin is written from its paper and shares nothing with the program but how wide a map's window is: depths are those of
-parallelograms along the directions of texels' centres, computed, not drawn. A square light of half-size HALF at height 5, the
-floor at height 0, which alone receives and does not cast. Tangents (a, b) = (x, z) / depth, depth = 5 - y.
+Each twin is written from its paper and shares with the program only the width of a map's window: depths are those of
+parallelograms along the directions of texels' centres, computed, not drawn. A square light of half-size HALF is at
+height 5; the floor at height 0 is the only receiver and does not cast. Tangents (a, b) = (x, z) / depth, depth = 5 - y.
 
-Tolerance: a border on the light is ((tangent - a) f) with f = z_s z / (z - z_s), at most 20 here; tangents and depths are
-float32, off by 2^-24 of 1 and of the scene's 8, and a few roundings follow: f moves by 2^-21 of itself, a border by 1e-5, of a
-light 1 wide. Up to 50 texels' borders are an outline that counts: 5e-4 at worst, in the mean 1e-5. A constant that is off by
-2 % moves V by 1e-2 somewhere. Texels whose centre is within 1/128 texel of an outline are drawn either way (the rasteriser snaps
-corners to 1/256): pixels whose kernels hold one are left out.
+Tolerance: a border on the light is ((tangent - a) f) with f = z_s z / (z - z_s), at most 20 here. Tangents and depths
+are float32, off by 2^-24 of 1 and of the scene's 8, and a few roundings follow: f is off by 2^-21 of itself, a border
+by 1e-5 of a light 1 wide. Up to 50 texels' borders form an outline that counts: 5e-4 at worst, 1e-5 on average. A
+constant that is wrong by 2 % moves V by 1e-2 somewhere. Texels whose centre is within 1/128 texel of an outline may be
+drawn either way (the rasteriser snaps corners to 1/256): pixels whose kernels contain one are left out.
 """
 
 import struct
@@ -59,7 +59,7 @@ def scene_of(casters):
 
 
 def local(points):
-    """World to (x, z, depth)."""
+    """Converts from world space to (x, z, depth)."""
     points = np.asarray(points, float)
     return np.stack([points[..., 0], points[..., 2], HEIGHT - points[..., 1]], -1)
 
@@ -69,7 +69,8 @@ def corners_of(quads):
 
 
 class Map:
-    """Depths along the directions of texels' centres seen from a point of the light, in layers from the nearest on."""
+    """Depths along the directions of texels' centres as seen from a point of the light, in layers beginning with the
+    nearest."""
 
     def __init__(self, casters, size, lower, upper, point=(0.0, 0.0)):
         self.size, self.lower, self.texel = size, lower, (upper - lower) / size
@@ -115,7 +116,7 @@ def spared(lower, upper, size):
 
 
 def whole_light_window(casters, size):
-    """The window that holds all receivers, and the casters that stand between one and any of the light."""
+    """Returns the window that holds all receivers, and the casters between any receiver and any point of the light."""
     seen, depth = tangents(corners_of(casters)), local(corners_of(casters))[..., 2]
     reach = HALF * (1 / depth.min() - 1 / HEIGHT)
     edge = FLOOR / HEIGHT
@@ -131,12 +132,13 @@ def tangents(corners, point=(0.0, 0.0)):
 
 
 def map_of(casters, size):
-    """The map of the light's centre, of the size among ten from this on that leaves least to the rasteriser."""
+    """Returns the map of the light's centre; of ten sizes from this one on, the one that leaves fewest texels to the
+    rasteriser."""
     return min((Map(casters, n, *whole_light_window(casters, n)) for n in range(size, size + 10)), key=lambda m: m.unsure.sum())
 
 
 def is_sure(m, p):
-    """Returns whether no texel that can hide light from p, or is next to one, is left to the rasteriser."""
+    """Returns whether no texel that can hide light from p, nor a neighbour of one, is left to the rasteriser."""
     reach = HALF * (1 / m.layer(0).min() - 1 / p[2]) + 2 * max(m.texel)
     near = (np.abs(m.a - p[0] / p[2]) < reach) & (np.abs(m.b - p[1] / p[2]) < reach)
     return not (m.unsure & near).any()
@@ -147,7 +149,8 @@ def overlap(low, high):
 
 
 def scale(depth, z):
-    """f(z_s, z): a border at this depth, seen from z, is so much times its tangent's distance on the light."""
+    """Returns f(z_s, z): the factor from a border's tangent at this depth to its distance on the light, as seen from
+    z."""
     hides = depth < z
     return np.where(hides, depth * z / np.where(hides, z - depth, 1), 0)
 
@@ -157,7 +160,7 @@ def hides(m, depth, z, bias=0.5):
 
 
 def backproject(m, p, fill):
-    """Guennebaud, Barthe and Paulin 2006, of one layer."""
+    """Guennebaud, Barthe and Paulin 2006, with one layer."""
     (a, b), z = p[:2] / p[2], p[2]
     depth = m.layer(0)
     counts, f = hides(m, depth, z), scale(depth, z)
@@ -175,7 +178,8 @@ def backproject(m, p, fill):
 
 
 def peel(m, p, layers, select):
-    """Bavoil, Callahan and Silva 2006: the deepest of a texel's surfaces, behind the middle to the next one."""
+    """Bavoil, Callahan and Silva 2006: the deepest of a texel's surfaces counts for which p is behind the middle between
+    it and the next one."""
     (a, b), z = p[:2] / p[2], p[2]
     hidden, settled = np.zeros((m.size, m.size)), np.zeros((m.size, m.size), bool)
     for k in reversed(range(layers)):
@@ -193,8 +197,8 @@ def peel(m, p, layers, select):
 
 
 def clipped(polygon, lower=(-HALF, -HALF), upper=(HALF, HALF)):
-    """A polygon in the light's square, or in a texel of it, edge by edge (Sutherland and Hodgman): signed areas stay what they are
-    there."""
+    """Clips a polygon to the light's square, or to a texel of it, edge by edge (Sutherland and Hodgman): signed areas
+    inside stay the same."""
     for axis in range(2):
         for sign, end in ((-1, -lower[axis]), (1, upper[axis])):
             inside, count = [], len(polygon)
@@ -211,11 +215,11 @@ def clipped(polygon, lower=(-HALF, -HALF), upper=(HALF, HALF)):
     return polygon
 
 
-WINDOW = np.array([[64, 255, 130], [0, 190, 230]])  # sRGB of 8 bits, the upper row first
+WINDOW = np.array([[64, 255, 130], [0, 190, 230]])  # 8-bit sRGB, the upper row first
 
 
 def window_png():
-    """The file, of the standard library alone."""
+    """Returns the PNG file, made with only the standard library."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
     rows = b"".join(b"\0" + bytes(int(x) for x in row) for row in WINDOW)
@@ -224,7 +228,7 @@ def window_png():
 
 
 def window_texels():
-    """Each texel's corners on the light and its share of the radiance; one texel of a plain light is the whole of it."""
+    """Yields each texel's corners on the light and its share of the radiance; a plain light is one texel."""
     c = WINDOW / 255
     linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
     height, width = linear.shape
@@ -239,22 +243,23 @@ PLAIN = [(np.full(2, -HALF), np.full(2, HALF), 1.0)]
 
 
 def contour(m, p, texels=PLAIN):
-    """Guennebaud, Barthe and Paulin 2007: loops of marching squares around texels that shade, vertices midway at the depth of
-    the texel that shades, projected onto the light; hidden is what they wind around, weighed by the light's texels."""
+    """Guennebaud, Barthe and Paulin 2007: loops of marching squares around texels that cast, with vertices midway, at
+    the depth of the casting texel, projected onto the light. The hidden part is what they wind around, weighed by the
+    light's texels."""
     e, z = p, p[2]
     shading = np.zeros((m.size + 2, m.size + 2), bool)
     shading[1:-1, 1:-1] = hides(m, m.layer(0), z)
     depth = np.pad(m.layer(0), 1, constant_values=FAR)
     ends = {}
-    corner = [(0, 0), (0, 1), (1, 1), (1, 0)]  # of a cell, counter-clockwise
+    corner = [(0, 0), (0, 1), (1, 1), (1, 0)]  # corners of a cell, counter-clockwise
     cells = np.argwhere(shading[:-1, :-1] | shading[1:, :-1] | shading[:-1, 1:] | shading[1:, 1:])
     for row, column in cells:
         at = [(row + dy, column + dx) for dy, dx in corner]
         on = [shading[q] for q in at]
         if all(on):
             continue
-        # The edge around each run of shading corners runs from the side after its last to the side before its first,
-        # which leaves the corners on its left.
+        # The edge around each run of casting corners goes from the side after its last corner to the side before its
+        # first, which leaves the corners on its left.
         for k in range(4):
             if not on[k] or on[k - 1]:
                 continue
@@ -288,7 +293,8 @@ def contour(m, p, texels=PLAIN):
 
 
 def bitmask(m, p, across):
-    """Schwarz and Stamminger 2008: of quads between centres of four texels that hide, a bit a light sample."""
+    """Schwarz and Stamminger 2008: one bit for each light sample, hidden by quads between the centres of four texels
+    that all cast."""
     e, z = p, p[2]
     depth = m.layer(0)
     counts, f = hides(m, depth, z), scale(depth, z)
@@ -333,7 +339,7 @@ def soft_shadow_map(casters, size, receiver_size, places, passes):
 
 
 def adaptive_light(casters, size, places, taps):
-    """Schwaerzler, split once everywhere: nine maps of equal weight, each filtered over taps x taps texels."""
+    """Schwaerzler, with one split everywhere: nine maps of equal weight, each filtered over taps x taps texels."""
     v, unsure = np.zeros(len(places)), np.zeros(len(places), bool)
     beside = 2 * 4 * (taps // 2) / size if taps > 2 else 0.0
     for lx in (-HALF, 0, HALF):
@@ -352,7 +358,7 @@ def adaptive_light(casters, size, places, taps):
                 weights = [np.maximum(np.minimum(np.arange(size) + 1, at[k] + half) - np.maximum(np.arange(size), at[k] - half), 0)
                            for k in range(2)]
                 both = weights[1][:, None] * weights[0][None] / (2 * half) ** 2
-                v[i] += (1 - (both * ~lit).sum()) / 9  # beside the map there is nothing
+                v[i] += (1 - (both * ~lit).sum()) / 9  # outside the map there are no casters
                 unsure[i] |= (m.unsure & (both > 0)).any()
     return v, unsure
 
@@ -412,7 +418,7 @@ class Twins(unittest.TestCase):
             for method in ("contour", "packet"):
                 places, found = self.sure_pictures(name, m, method, textured=True)
                 expected = np.array([contour(m, p, texels) for p in places])
-                self.compare(f"{method}, {name}, textured", found, expected, 2e-4)  # the brightest column over the mean: 1.7
+                self.compare(f"{method}, {name}, textured", found, expected, 2e-4)  # the brightest column over the mean is 1.7
                 self.assertGreater(np.abs(expected - [contour(m, p) for p in places]).max(), 0.05)
 
     def test_bitmask(self):
@@ -432,7 +438,7 @@ class Twins(unittest.TestCase):
                 edge = FLOOR / HEIGHT
                 first, last = spared(np.full(2, -edge), np.full(2, edge), 64)
                 at = (places[:, :2] / places[:, 2:] - first) / (last - first) * 64
-                inside = (np.abs(at - np.round(at)) > 1e-3).all(1)  # else in either texel
+                inside = (np.abs(at - np.round(at)) > 1e-3).all(1)  # otherwise rounding may choose either texel
                 expected, unsure = soft_shadow_map(casters, size, 64, places[inside], passes)
                 if unsure:
                     continue  # every patch counts, wherever it is

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""`vssm` and `forward-map` on maps that are fitted to what a camera sees: windows of one texel against the hard shadow of the same maps,
-one slice and one tile against one window, and all fits against exact areas as texels shrink. Receivers are the level floor and blockers
-level plates, so that where no window holds two plates a bound is the share itself, and exponentials are, too."""
+"""Tests `vssm` and `forward-map` on maps fitted to the camera's view: windows of one texel against the hard shadow of
+the same maps, one slice and one tile against one window, and all fits against exact areas as texels shrink. Receivers
+are the level floor and blockers are level plates, so that a bound is the share itself where no window contains two
+plates, and so are exponentials."""
 
 import unittest
 
@@ -32,9 +33,10 @@ def rms(difference):
 
 class FilteredFits(unittest.TestCase):
     def test_a_window_of_one_texel_is_the_shadow_map(self):
-        # Between the plates and the floor lies a third of the range of heights or more: 1 - exp(-40/3) of evsm's. The least variance
-        # L leaves V = L / (L + distance^2): of vsm 2^-22, of four layers 16 times that, of evsm (40 b)^2 with a bias b, here 0.05
-        # texels of at most 1/40 each over a range of more than a half: 0.01. A series is up to a third away (docs/vssm.md).
+        # Between the plates and the floor is at least a third of the range of heights: evsm gives 1 - exp(-40/3). The
+        # least variance L leaves V = L / (L + distance^2): for vsm L is 2^-22, for four layers 16 times that, for evsm
+        # (40 b)^2 with a bias b, here 0.05 texels of at most 1/40 each over a range of more than a half: 0.01. A series
+        # is up to a third off (docs/vssm.md).
         bounds = {"vsm": 1e-4, "lvsm": 1e-3, "evsm": 0.02, "esm": 1e-3, "csm": 0.4}
         for fit in FITS:
             common = fit | {"size": "128", "bias": "0.05"}
@@ -47,8 +49,8 @@ class FilteredFits(unittest.TestCase):
                 self.assertLess(off, bounds[moments], (fit, moments, prefilter))
 
     def test_splats_of_one_texel_are_the_shadow_map(self):
-        # The plates are far above the floor: of a texel that shows the floor both conditions of forward-map hold, of one that shows
-        # a plate none. Near the floor's border a texel shows what is beside the floor.
+        # The plates are far above the floor: both conditions of forward-map hold for a texel that shows the floor, none
+        # for one that shows a plate. Near the floor's border a texel shows what is outside the floor.
         for fit in FITS:
             common = fit | {"size": "128"}
             hard, found = picture("two plates", common, "shadow-map"), picture("two plates", common | {"splat": "box"}, "forward-map")
@@ -68,8 +70,8 @@ class FilteredFits(unittest.TestCase):
                 self.assertLess(off.max(), 1e-3, (moments, prefilter))
 
     def test_fits_approach_the_area(self):
-        # Of one flat blocker over a level floor only texels' width is left: each border of a window is off by less than a texel, of
-        # the sixteenth of the width at 512.
+        # With one flat blocker over a level floor, only the width of texels causes errors: each border of a window is
+        # off by less than a texel, of a sixteenth of the width at 512.
         exact = picture("plate", {}, "exact")
         here = floor_of(exact)
         for fit in FITS:
@@ -79,9 +81,9 @@ class FilteredFits(unittest.TestCase):
             self.assertLess(errors[2], 0.01, fit)
 
     def test_one_slice_of_pcf_is_one_window_but_for_its_margin(self):
-        # A slice leaves as many texels free on every side as pcf taps beside a receiver, and one more; a window one, and takes in the casters
-        # there. With that many texels more a slice has the window's texels, if no caster is beside the receivers: the floor, which is
-        # wider than what pixels show of it, casts nothing here.
+        # A slice leaves free, on every side, one texel more than pcf's taps reach from a receiver; a window leaves one,
+        # and includes the casters there. With that many more texels a slice has the window's texels, if no caster is
+        # outside the receivers: here the floor, which is wider than the part that pixels show, casts nothing.
         for name in ("plate", "two plates"):
             scene = scene_of(SCENES[name])
             scene["meshes"][0]["castsShadow"] = False

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The filtering map methods against numpy, from their papers, on depths of parallelograms that are computed and not drawn.
-The light is a square of half-size LIGHT at height TOP over a level floor; everything is in the light's frame:
-x and y across, z the depth below its plane."""
+"""Compares the filtering map methods with numpy versions from their papers, on depths of parallelograms that are
+computed and not drawn. The light is a square of half-size LIGHT at height TOP over a level floor; everything is in the
+light's frame: x and y across, z the depth below its plane."""
 
 import itertools
 import unittest
@@ -15,12 +15,12 @@ BIAS, STEEPEST, LAYERS = 0.5, 8.0, 4  # the program's defaults: maps/README.md, 
 
 
 def plate(height, center, half, rise=0.0):
-    """A rectangle at this height; it rises by `rise` for each unit of x."""
+    """Returns a rectangle at this height; it rises by `rise` for each unit of x."""
     return {"center": [center[0], height, center[1]], "halfU": [half[0], rise * half[0], 0], "halfV": [0, 0, half[1]]}
 
 
 def box(height, center, half, low):
-    """The five sides of a box that a light above can see."""
+    """Returns the five sides of a box that a light above it can see."""
     (x, z), (a, b), middle, tall = center, half, (height + low) / 2, (height - low) / 2
     sides = [{"center": [x + s * a, middle, z], "halfU": [0, 0, b], "halfV": [0, tall, 0]} for s in (-1, 1)]
     sides += [{"center": [x, middle, z + s * b], "halfU": [a, 0, 0], "halfV": [0, tall, 0]} for s in (-1, 1)]
@@ -44,13 +44,14 @@ def scene_of(quads):
 
 
 def in_frame(point):
-    """World to the light's frame; which way x and y run changes nothing, since the grid of texels is symmetric."""
+    """Converts from world space to the light's frame; the directions of x and y do not matter, since the grid of texels
+    is symmetric."""
     p = np.asarray(point, float)
     return np.stack([p[..., 0], p[..., 2], TOP - p[..., 1]], axis=-1)
 
 
 class Map:
-    """The depth map from the light's centre, its window the floor's directions and a texel on every side."""
+    """The depth map from the light's centre; its window is the floor's directions and one more texel on every side."""
 
     def __init__(self, quads):
         self.texel = 2 * FLOOR / TOP / (SIZE - 2)
@@ -65,7 +66,7 @@ class Map:
         self.t = np.where(np.isfinite(depth), self.normalised(np.where(np.isfinite(depth), depth, TOP)), 1.0)
 
     def depth_of(self, quad):
-        """Returns the depth at each texel's centre; infinite beside the quad."""
+        """Returns the depth at each texel's centre; infinite outside the quad."""
         center, rays = in_frame(quad["center"]), self.rays
         u, v = (in_frame(np.add(quad["center"], quad[k])) - center for k in ("halfU", "halfV"))
         # center + a u + b v = z ray
@@ -96,7 +97,7 @@ class Receiver:
 
 
 def blocks(map_, receiver, at, limit, bias):
-    """Williams 1978, with the receiver's plane where the texel's centre sees it (maps/README.md)."""
+    """Williams 1978, with the receiver's plane taken at the direction of the texel's centre (maps/README.md)."""
     direction = np.append(map_.lower + (np.asarray(at) + 0.5) * map_.texel, 1.0)
     facing = receiver.m @ direction
     across = np.abs(receiver.m[:2]).sum()
@@ -119,7 +120,8 @@ def pcf(map_, receiver, window):
 
 
 def forward(map_, receiver, degree):
-    """Zhang 1998: every texel throws a B-spline at what it shows; here at one receiver, all texels of the map at once."""
+    """Zhang 1998: every texel splats a B-spline onto the surface that it shows; here at one receiver, for all texels of
+    the map at once."""
     if receiver.h <= 0:
         return 0.0
     spline = [lambda a: (a < 0.5) * 1.0, lambda a: np.maximum(1 - a, 0),
@@ -137,14 +139,16 @@ def forward(map_, receiver, degree):
 
 
 class Filter:
-    """pcss' windows by means: Yang et al. 2010, Lauritzen and McCool 2008, Annen et al. 2007 and 2008."""
+    """The windows of pcss, filtered by means: Yang et al. 2010, Lauritzen and McCool 2008, Annen et al. 2007 and
+    2008."""
 
     def __init__(self, map_, moments, cuts=0, terms=16, exponent=80.0, window=0):
         self.map, self.moments, self.cuts, self.terms, self.window = map_, moments, cuts, terms, window
         self.c = exponent / 2 if moments == "evsm" else exponent
 
     def mean(self, lower, upper, f):
-        """Returns the mean of f(t) over a window, a texel at its border by its share; beside the map t is 1."""
+        """Returns the mean of f(t) over a window, in which a texel at the border counts by its share; outside the map t
+        is 1."""
         x0, y0 = np.maximum(np.floor(lower), 0).astype(int)
         x1, y1 = np.minimum(np.ceil(upper), SIZE).astype(int)
         if x1 <= x0 or y1 <= y0:
@@ -162,7 +166,7 @@ class Filter:
         mean = lambda f: self.mean(lower, upper, f)
         if self.moments == "vsm":
             share = self.bound(mean(lambda q: q), mean(lambda q: q * q), t, 2.0**-22)
-        elif self.moments == "lvsm":  # Lauritzen and McCool 2008: the layer that holds t alone
+        elif self.moments == "lvsm":  # Lauritzen and McCool 2008: only the layer that contains t
             layer = min(int(t * LAYERS), LAYERS - 1)
             warp = lambda q: np.clip(LAYERS * q - layer, 0, 1)
             share = self.bound(mean(warp), mean(lambda q: warp(q) ** 2), t * LAYERS - layer, 2.0**-22 * LAYERS**2)
@@ -202,7 +206,7 @@ class Filter:
         return self.map.normalised(self.kept * self.receiver.h / facing)
 
     def parts(self, lower, upper, cut=0):
-        """The window, or the sum over the 4^cuts parts that it is cut into."""
+        """Returns the result for the window, or the mean over the 4^cuts parts into which it is cut."""
         if self.cuts == 0:
             return self.lit(lower, upper, self.exact)
         if self.mean(lower, upper, lambda q: (q < self.biased).astype(float)) == 0:
@@ -248,7 +252,7 @@ class Filter:
         if self.window:
             first = np.floor(map_.place(d) - self.window / 2 + 0.5)
             return float(np.clip(self.parts(first, first + self.window)[0], 0, 1))
-        radius = 2 * LIGHT / np.sqrt(np.pi)  # of a disk of the light's area
+        radius = 2 * LIGHT / np.sqrt(np.pi)  # radius of a disk with the light's area
         share, blocked = self.parts(*self.window_through(min(max(map_.nearest, radius), d[2])))
         if share >= 1:
             return 1.0
@@ -257,7 +261,8 @@ class Filter:
 
 
 class Slices:
-    """Eisemann and Decoret 2006: casters in equally thick slices, each a picture of bits that the light's box filters; a product."""
+    """Eisemann and Decoret 2006: casters in equally thick slices, each a picture of bits that the light's box filters;
+    V is the product."""
 
     def __init__(self, map_, quads, count=8):
         self.filter = Filter(map_, "vsm")
@@ -296,8 +301,8 @@ class Slices:
 
 
 class Convolution(Slices):
-    """Soler and Sillion 1998: all blockers in one plane, at their triangles' mean height by the area that the light's plane sees; of
-    objects that all receive, the largest as seen from there is no blocker."""
+    """Soler and Sillion 1998: all blockers are in one plane, at the mean height of their triangles weighed by their
+    area as seen from the light's plane; if all objects receive, the largest as seen from there is no blocker."""
 
     def __init__(self, map_, quads):
         self.filter, self.map = Filter(map_, "vsm"), map_
@@ -310,7 +315,8 @@ class Convolution(Slices):
 
 class Twins(unittest.TestCase):
     def check(self, method, options, twin, tolerance, most_off=0.01):
-        """`most_off`: pixels whose search says blocked or not by a hair, or whose place is a texel's border within float32."""
+        """`most_off`: share of pixels that rounding may change: their search is at the limit of being blocked, or their
+        place is at a texel's border within float32."""
         for name, quads in SCENES.items():
             picture = penumbra.render(penumbra.Scene.from_dict(scene_of(quads)), size=(PIXELS, PIXELS), method=method,
                                       options={"size": str(SIZE), **options})
@@ -339,8 +345,9 @@ class Twins(unittest.TestCase):
         for degree, splat in enumerate(("box", "tent", "spline")):
             self.check("forward-map", {"splat": splat}, lambda m: lambda r: forward(m, r, degree), 1e-5, 0.015)
 
-    # Means are right to 2^-23 of their range, a variance to 2^-22; the bound divides it by itself and the squared distance
-    # from the mean, of which half a texel of depth, .004 of the range, is the least: 2^-22 / .004 = 6e-5.
+    # Means are right to 2^-23 of their range, a variance to 2^-22. The bound divides the variance by itself plus the
+    # squared distance from the mean; the smallest distance is half a texel of depth, 0.004 of the range: 2^-22 / 0.004
+    # = 6e-5.
     def test_variance(self):
         self.check("vssm", {"subdivision": "none"}, lambda m: Filter(m, "vsm"), 2e-4)
 
@@ -353,7 +360,7 @@ class Twins(unittest.TestCase):
         self.check("vssm", {"moments": "lvsm", "subdivision": "none"}, lambda m: Filter(m, "lvsm"), 2e-4, 0.02)
         self.check("vssm", {"moments": "lvsm"}, lambda m: Filter(m, "lvsm", cuts=3), 2e-4, 0.02)
 
-    # Means of bits are exact: what is left is float32 of windows' borders.
+    # Means of bits are exact: only the float32 rounding of windows' borders is left.
     def test_slices(self):
         for count in (3, 8):
             self.check("occlusion-textures", {"slices": str(count)}, lambda m: Slices(m, m.quads, count), 1e-4)
@@ -369,7 +376,7 @@ class Twins(unittest.TestCase):
         self.check("vssm", {"moments": "esm"}, lambda m: Filter(m, "esm"), 5e-4, 0.02)
 
     # Functions of the series have 12 digits; their weights add up to less than 2. A damped step ends close to 1, so
-    # that a search says by a hair more often whether anything blocks.
+    # more searches are at the limit of being blocked.
     def test_series(self):
         self.check("vssm", {"moments": "csm"}, lambda m: Filter(m, "csm"), 1e-3, 0.08)
         self.check("vssm", {"moments": "csm", "terms": "6"}, lambda m: Filter(m, "csm", terms=6), 1e-3, 0.08)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps that are fitted to what a camera sees, against numpy: the faces of its frustum (Kozlov 2004, Lloyd et al. 2006) and tiles that
-are queried (Giegl and Wimmer 2007). The scenes have level plates far from one another, so that no bias decides: a pixel is dark where
-the ray through its texel's centre meets a plate before the plane of the pixel's own."""
+"""Compares maps fitted to the camera's view with numpy: the faces of the camera's frustum (Kozlov 2004, Lloyd et al.
+2006) and queried tiles (Giegl and Wimmer 2007). The scenes have level plates far from one another, so that no bias
+matters: a pixel is dark if the ray through its texel's centre meets a plate before the plane of the pixel's own
+surface."""
 
 import unittest
 
@@ -13,17 +14,17 @@ from hard import depths
 
 EYE, TARGET, FOV = np.array([0.7, 1.3, 4.1]), np.array([-0.1, 0.1, 0.2]), 50.0
 NAMES = ("plate", "two plates")
-HAIR = 1e-3  # texels: float32 of places
+HAIR = 1e-3  # in texels: places in float32 may be off by this
 
 
 class Seen:
-    """The picture's view samples in the light's frame, and the camera there."""
+    """The picture's view samples and the camera, in the light's frame."""
 
     def __init__(self, picture):
         self.pixels = np.argwhere(picture.A == 1)
         self.points = np.array([in_frame(picture.P[y, x]) for y, x in self.pixels])
         level = np.array([picture.N[y, x] for y, x in self.pixels])
-        self.up = level[:, 1] > 0  # toward the light
+        self.up = level[:, 1] > 0  # facing the light
         turn = lambda v: in_frame(v) - in_frame([0, 0, 0])
         forward = (TARGET - EYE) / np.linalg.norm(TARGET - EYE)
         right = np.cross(forward, [0, 1, 0])
@@ -36,7 +37,8 @@ class Seen:
 
 
 def fitted(matrix, points, size):
-    """The matrix followed by the one that takes the bounds of these points to the face, a texel from its border on each side."""
+    """Returns the matrix followed by the one that maps the bounds of these points to the face, one texel from its
+    border on each side."""
     at = points @ matrix.T
     at = at[:, :2] / at[:, 2:]
     middle, half = (at.max(axis=0) + at.min(axis=0)) / 2, (at.max(axis=0) - at.min(axis=0)) / 2 / (1 - 2 / size)
@@ -51,12 +53,12 @@ def place(matrix, e):
 
 
 class Frustum:
-    """docs/map-fits.md, Faces of the frustum: for each face the rows of a matrix that takes rays to places."""
+    """docs/map-fits.md, Faces of the frustum: for each face a matrix that takes rays to places."""
 
     def __init__(self, seen, size):
         self.size, self.faces = size, []
         parts = self.homographies(seen)
-        # The face whose image of the ray is in the picture, or nearest to it.
+        # The face in which the ray's image is inside the picture, or nearest to it.
         leaves = np.argmin([[np.abs(place(m, e)).max() for m in parts] for e in seen.points], axis=1)
         for k, matrix in enumerate(parts):
             if (leaves == k).any():
@@ -70,7 +72,7 @@ class Frustum:
                 g = sign * normal - seen.forward
                 if g @ eye <= 0:  # the light is outside
                     continue
-                w = lambda of: (g @ eye) * of - (of @ eye) * g  # of · W, as a row for e
+                w = lambda of: (g @ eye) * of - (of @ eye) * g  # of · W, as a row that is multiplied by e
                 depth = w(seen.forward)
                 low, high = 1 / seen.far, 1 / seen.near
                 parts.append(np.array([w(along), (2 * g - (low + high) * depth) / (high - low), depth]))
@@ -86,7 +88,7 @@ class Frustum:
 
 
 class Even:
-    """One window, and squares of it."""
+    """One window, and the squares into which it is cut."""
 
     def __init__(self, seen, size):
         self.size, self.whole = size, fitted(np.eye(3), seen.points, size)
@@ -101,7 +103,7 @@ class Even:
 
 
 def lit(fit, e, quads):
-    """What the texel of e says; None where rounding may choose another one."""
+    """Returns whether the texel of e is lit; None if rounding may choose another texel."""
     matrix = fit.matrix_of(e)
     if matrix is None:
         return None
@@ -113,7 +115,7 @@ def lit(fit, e, quads):
 
 
 def query(fit, seen, quads, tiles, changed):
-    """Squares are cut where the last cut changed more than so many pixels; all that are due for one picture."""
+    """Cuts squares whose last cut changed more than `changed` pixels; all that are due are cut for one picture."""
     answers = lambda: np.array([bool(lit(fit, e, quads)) if up else False for e, up in zip(seen.points, seen.up)])
     at = np.array([place(fit.whole, e) for e in seen.points])
     inside = lambda square: np.flatnonzero((np.floor(at * 2.0 ** square[0]) == square[1:]).all(axis=1))

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""FLIP (Andersson et al. 2020) in numpy against what `compare` says of the pictures that it writes: argv is the program, a scene.
+"""Compares FLIP (Andersson et al. 2020) in numpy with the results of `compare` for the pictures that it writes:
+arguments are the program and a scene.
 
-Written from the paper, with whole two-dimensional filters where the program has rows and columns. Both work in double on the same
-bytes: the tolerance is rounding of a float32 map. With --print WIDTH HEIGHT it prints what the unit test Flip.AsTheTwinHasIt holds.
+Written from the paper, with whole two-dimensional filters where the program filters rows and columns. Both work in
+double on the same bytes: the tolerance is the rounding of a float32 map. With --print WIDTH HEIGHT it prints the values
+in the unit test FlipTest.IsAsTheTwinHasIt.
 """
 
 import json
@@ -18,7 +20,7 @@ PIXELS_PER_DEGREE = 0.7 * 3840 / 0.7 * np.pi / 180
 
 
 def png(path):
-    """8-bit RGB, without interlacing."""
+    """Reads an 8-bit RGB PNG without interlacing."""
     data = pathlib.Path(path).read_bytes()
     at, packed = 8, b""
     while at < len(data):
@@ -115,7 +117,7 @@ def flip(reference, picture, ppd=PIXELS_PER_DEGREE):
 
 
 def made_up(width, height):
-    """Two pictures by rule: steps, a dot, colours."""
+    """Returns two generated pictures: steps, a dot, colours."""
     y, x = np.mgrid[0:height, 0:width]
     first = np.stack([(37 * x + 11 * y) % 256, (16 * x) % 256, np.where(x > y, 200, 30)], -1)
     second = first.copy()

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""frames.py PROGRAM: shadow-map:reproject=on against numpy, from Scherzer, Jeschke and Wimmer 2007 (course notes, 3.2.6): a sequence
-whose camera moves over level plates. Each frame's map is moved by a point of Halton's sequence; V is mixed with that of the frame before,
-at the place where the surface was seen there, by how near the pixel is to its texel's centre."""
+"""frames.py PROGRAM: compares shadow-map:reproject=on with numpy, from Scherzer, Jeschke and Wimmer 2007 (course notes,
+3.2.6), on a sequence whose camera moves over level plates. Each frame's map is moved by a point of Halton's sequence; V
+is mixed with V of the frame before, at the place where the surface was seen there, with a weight given by how near the
+pixel is to its texel's centre."""
 
 import json
 import pathlib
@@ -20,7 +21,7 @@ from hard import depths  # noqa: E402
 SIZE, FRAMES = 40, 5
 TARGET, FOV = np.array([0.0, 0.2, 0.0]), 50.0
 SAME_SURFACE = 2.0**-10
-HAIR = 2e-3  # texels: a place that float32 may put beside a border; what it says counts fully there
+HAIR = 2e-3  # in texels: float32 may put a place so near a border into the next texel, whose answer may count fully
 
 
 def eye_of(frame):
@@ -49,14 +50,14 @@ class Picture:
         self.axes = np.stack([right, np.cross(right, forward), forward])
 
     def place(self, p):
-        """Column and row, pixels' centres at whole numbers."""
+        """Returns column and row, with pixels' centres at whole numbers."""
         x, y, z = self.axes @ (p - self.eye)
         scale = 0.5 * PIXELS / np.tan(np.radians(FOV) / 2) / z
         return (x * scale + 0.5 * PIXELS - 0.5, 0.5 * PIXELS - y * scale - 0.5) if z > 0 else None
 
 
 class Window:
-    """The map of one frame: the floor's directions, a texel on every side, moved."""
+    """The moved map of one frame: the floor's directions and one more texel on every side."""
 
     def __init__(self, quads, frame):
         self.quads, self.texel = quads, 2 * FLOOR / TOP / (SIZE - 2)
@@ -64,7 +65,7 @@ class Window:
         self.lower = -FLOOR / TOP - self.texel + moved * self.texel
 
     def ask(self, d):
-        """V, and the confidence in it; None where rounding may choose another texel."""
+        """Returns V and the confidence in it; None if rounding may choose another texel."""
         place = (d[:2] / d[2] - self.lower) / self.texel
         off = np.abs(place - np.floor(place) - 0.5).max()
         if off > 0.5 - HAIR:
@@ -74,7 +75,8 @@ class Window:
 
 
 def before(last, values, p, n):
-    """V where the last picture shows this surface: bilinear over those of four pixels that see its plane; None: it does not."""
+    """Returns V where the last picture shows this surface, bilinear over those of four pixels that see its plane; None
+    if it does not show it."""
     place = last.place(p)
     if place is None:
         return None
@@ -85,7 +87,7 @@ def before(last, values, p, n):
             if weight <= 0 or not (0 <= column < PIXELS and 0 <= row < PIXELS) or not last.shown[row, column]:
                 continue
             if np.isnan(values[row, column]):
-                return np.nan  # not known to this twin
+                return np.nan  # this twin does not know V there
             seen = last.p[row, column] - last.eye
             if abs(n @ (p - last.eye) / (n @ seen) - 1) < SAME_SURFACE:
                 total, weights = total + weight * values[row, column], weights + weight
@@ -93,7 +95,7 @@ def before(last, values, p, n):
 
 
 class Twins(unittest.TestCase):
-    # V is stored in float32 in each frame: 2^-24 of it, five frames.
+    # V is stored in float32 in each frame: 2^-24 of it, for five frames.
     def test_reprojection(self):
         for name in ("plate", "two plates"):
             with tempfile.TemporaryDirectory() as folder:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Hard shadows of the light's centre against numpy, on the scenes of filtering.py: volumes, however they are counted, and lists of
-view samples, against what a ray to the centre meets; volumes from a map (McCool 2000) against walls on the borders of texels, found
-on the segment from the eye to the view sample."""
+"""Compares hard shadows of the light's centre with numpy, on the scenes of filtering.py: volumes, in all ways of
+counting, and lists of view samples are compared with what a ray to the centre meets; volumes from a map (McCool 2000)
+with walls on the borders of texels, found on the segment from the eye to the view sample."""
 
 import unittest
 
@@ -21,7 +21,7 @@ def camera(scene, place):
 
 
 def depths(ray, quads):
-    """At which depths a ray of depth 1 meets quads and the floor."""
+    """Returns the depths at which a ray of depth 1 meets quads and the floor."""
     floor = {"center": [0, 0, 0], "halfU": [FLOOR, 0, 0], "halfV": [0, 0, -FLOOR]}
     found = []
     for quad in [*quads, floor]:
@@ -37,20 +37,20 @@ def depths(ray, quads):
 
 
 def is_lit(d, quads):
-    """Nothing between the light's centre and the view sample; None within 1e-5 of an outline."""
+    """Returns whether nothing is between the light's centre and the view sample; None within 1e-5 of an outline."""
     answers = {min(depths(np.append(d[:2] / d[2] + off, 1.0), quads), default=np.inf) > d[2] * (1 - 1e-4)
                for off in ((0, 0), (1e-5, 0), (-1e-5, 0), (0, 1e-5), (0, -1e-5))}
     return answers.pop() if len(answers) == 1 else None
 
 
 class Walls:
-    """A map's inverse depths, with nothing around it, and walls where neighbours are not one surface."""
+    """A map's inverse depths, with nothing around it, and walls between neighbours that are not on one surface."""
 
     def __init__(self, map_):
         self.map = map_
-        self.inverse = np.zeros((SIZE + 4, SIZE + 4))  # [y, x], two texels of nothing on each side
+        self.inverse = np.zeros((SIZE + 4, SIZE + 4))  # [y, x], two empty texels on each side
         self.inverse[2:-2, 2:-2] = np.where(np.isfinite(map_.depth), 1 / map_.depth, 0)
-        self.tolerance = JUMP * map_.texel  # a step of k texels' widths at depth z: k texel z, and over z² in 1/z
+        self.tolerance = JUMP * map_.texel  # a step of k texels' widths at depth z is k · texel · z, and in 1/z that divided by z²
 
     def near(self, v, w):
         return abs(v - w) <= self.tolerance * max(v, w)
@@ -61,7 +61,8 @@ class Walls:
         return at[k:k + 4]
 
     def wall(self, fixed, k, axis):
-        """(is the second texel the nearer one, from which depth, to which depth); None: there is none."""
+        """Returns (whether the second texel is nearer, the wall's first depth, its last depth); None if there is no
+        wall."""
         before, one, other, after = self.line(fixed, k, axis)
         if one == 0 and other == 0:
             return None
@@ -82,7 +83,8 @@ class Walls:
         return 0 <= i < SIZE and 0 <= j < SIZE and x[2] > self.map.depth[j, i]
 
     def lit(self, eye, p):
-        """Walls that the segment from the eye to p enters, less those that it leaves; None where it passes a wall's end by a hair."""
+        """Returns whether the segment from the eye to p enters as many walls as it leaves; None if it passes very near
+        a wall's end."""
         count = int(self.is_behind(eye))
         borders = self.map.lower + np.arange(SIZE + 1) * self.map.texel
         for axis in (0, 1):
@@ -119,7 +121,7 @@ class Twins(unittest.TestCase):
                 judged, off, dark = 0, [], 0
                 for y, x in zip(*np.nonzero(picture.A == 1)):
                     d, n = in_frame(picture.P[y, x]), picture.N[y, x]
-                    if -np.array([n[0], n[2], -n[1]]) @ d <= LIGHT * 1.4:  # the light reaches below the horizon
+                    if -np.array([n[0], n[2], -n[1]]) @ d <= LIGHT * 1.4:  # part of the light is below the horizon
                         continue
                     lit = answer(d)
                     if lit is None:
@@ -135,7 +137,7 @@ class Twins(unittest.TestCase):
         self.assertGreater(shadows, 200)
 
     def test_volumes_and_lists(self):
-        known = {}  # all of them have the same view samples
+        known = {}  # all methods have the same view samples
 
         def twin(quads, eye):
             def answer(d):
@@ -149,7 +151,7 @@ class Twins(unittest.TestCase):
             self.check("hard-volume", {"variant": variant}, (HIGH, LOW), twin, 0)
         self.check("alias-free", {}, (HIGH, LOW), twin, 0)
 
-    # In doubt (an eye or a view sample within rounding of a wall's plane) the program counts triangles, not walls.
+    # If an eye or a view sample is within rounding of a wall's plane, the program counts triangles, not walls.
     def test_volumes_from_a_map(self):
         def twin(quads, eye):
             walls = Walls(Map(quads))

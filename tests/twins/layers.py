@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""layered-attenuation against a twin in numpy (the module penumbra must be found), from Agrawala, Ramamoorthi, Heirich and Moll
-2000: which light samples see a texel of the centre's image, by the texel of each sample's own map in which it lies.
+"""Compares layered-attenuation with a twin in numpy (the module penumbra must be found), from Agrawala, Ramamoorthi,
+Heirich and Moll 2000: which light samples see a texel of the centre's image, by the texel of each sample's own map in
+which it lies.
 
-The floor and the plates are parallel to the light. So the image of a sample's texel in the centre's map is an upright rectangle,
-and those of neighbours on one surface meet: the middle of a texel of the centre is in exactly one of them, and this sample counts
-if that texel's nearest surface is the receiver's. V is a whole number of samples. Where rounding may choose another texel (a view
-sample or a middle within 1e-3 texel of a border), and where a texel's middle is within 1/128 texel of an outline, a pixel is left
-out. Windows, casters and the light are those of backprojection.py."""
+The floor and the plates are parallel to the light. So the image of a sample's texel in the centre's map is an upright
+rectangle, and those of neighbours on one surface meet: the middle of a texel of the centre is in exactly one of them,
+and the sample counts if that texel's nearest surface is the receiver's. V is a whole number of samples. A pixel is left
+out if rounding may choose another texel (a view sample or a middle within 1e-3 texel of a border), or if a texel's
+middle is within 1/128 texel of an outline. Windows, casters and the light are those of backprojection.py."""
 
 import sys
 import unittest
@@ -28,7 +29,7 @@ def sample_points():
 
 
 def window(casters, receive, point):
-    """Returns the window of receivers as a point of the light sees them, and a texel on every side."""
+    """Returns the window of receivers as seen from a point of the light, and one more texel on every side."""
     lower, upper = (np.array([sign * FLOOR - c for c in point]) / HEIGHT for sign in (-1, 1))
     if receive:
         seen = tangents(corners_of(casters), point)
@@ -66,7 +67,7 @@ class Layers:
         sure = (np.abs(at - np.round(at)) > BORDER).all()
         count, is_sure = self.seen_by(own, p[2])
         sure = sure and is_sure
-        if count == 0 and sure:  # the receiver is looked for in the eight texels around
+        if count == 0 and sure:  # the receiver is searched in the eight surrounding texels
             around = [self.seen_by(own + (dx, dy), p[2]) for dy in (-1, 0, 1) for dx in (-1, 0, 1)]
             count, sure = max(c for c, _ in around), all(s for _, s in around)
         return count / len(self.points), sure

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: Apache-2.0
-"""layer-rays against numpy (Lischinski and Rappoport 1998, Keating and Max 1999, Agrawala et al. 2000): rays from a view sample to each
-light sample through the layers of the centre's map, whose texels are flat pieces at their depths. Scenes and maps are those of
-backprojection.py. A ray is stopped where
+"""Compares layer-rays with numpy (Lischinski and Rappoport 1998, Keating and Max 1999, Agrawala et al. 2000): rays from
+a view sample to each light sample through the layers of the centre's map, whose texels are flat pieces at their depths.
+Scenes and maps are those of backprojection.py. A ray is stopped where
 
   - it passes a piece's depth within the piece's texel;
-  - (`gap`) it passes from one texel to the next between their two depths, if these are at most so many texels apart: written for one
-    layer, where no surface goes on beside another;
-  - (`solid`) a part of it in a texel is between the first and the second layer, or the third and the fourth.
+  - (`gap`) it passes from one texel to the next between their two depths, if these are at most `gap` texels apart:
+    written for one layer, where no surface continues next to another;
+  - (`solid`) a part of it inside a texel is between the first and the second layer, or the third and the fourth.
 
-Each is written for all texels at once: with r the depth of a point of the ray, the point is seen in the map at s + (p - s) r / p.z over
-r, a line in 1/r. V is a whole number of rays; pixels are left out where a ray passes so near to a border that rounding decides."""
+Each test is written for all texels at once: with r the depth of a point of the ray, the point is seen in the map at s +
+(p - s) r / p.z over r, a line in 1/r. V is a whole number of rays; pixels are left out if a ray passes so near to a
+border that rounding decides."""
 
 import sys
 import unittest
@@ -31,7 +32,8 @@ def samples():
 
 
 def inside(line, m):
-    """The smallest distance to a texel's borders, in texels, of a line's points; one for each texel of the map: negative outside."""
+    """Returns, for each texel of the map, the smallest distance of a line's points to the texel's borders, in texels:
+    negative outside."""
     a, b = line
     x = (a - m.lower[0]) / m.texel[0] - np.arange(m.size)[None]
     y = (b - m.lower[1]) / m.texel[1] - np.arange(m.size)[:, None]
@@ -39,7 +41,7 @@ def inside(line, m):
 
 
 def seen(p, sample, depth):
-    """Where the ray's point at a depth is in the map."""
+    """Returns the place in the map of the ray's point at a depth."""
     return [sample[k] / depth + (p[k] - sample[k]) / p[2] for k in (0, 1)]
 
 
@@ -55,7 +57,7 @@ def pieces(m, p, sample, layers):
 
 
 def walls(m, p, sample, gap):
-    """Borders between texels that the ray passes between their depths."""
+    """Finds borders between texels that the ray passes between the two texels' depths."""
     depth, stopped, close = m.layer(0), False, False
     for axis in (0, 1):
         one, other = (depth[:, :-1], depth[:, 1:]) if axis == 0 else (depth[:-1], depth[1:])
@@ -71,7 +73,7 @@ def walls(m, p, sample, gap):
         along = 1 - axis
         at = (sample[along] / np.where(r > 0, r, 1) + (p[along] - sample[along]) / p[2] - m.lower[along]) / m.texel[along]
         at = at - (np.arange(m.size)[:, None] if axis == 0 else np.arange(m.size)[None])
-        # In units of what rounding may change.
+        # In units of the change that rounding may cause.
         within = np.minimum(at, 1 - at) / HAIR
         between = np.minimum(r / near - 1, 1 - r / far) / DEPTHS
         hit = np.where(joined & (r > 0), np.minimum(within, between), -2)
@@ -81,7 +83,8 @@ def walls(m, p, sample, gap):
 
 
 def insides(m, p, sample, layers):
-    """Texels in which a part of the ray is between two depths: in 1/r, one interval for each of the two borders and depths."""
+    """Finds texels in which a part of the ray is between two depths: in 1/r, one interval for the two borders on each
+    axis and one for the two depths."""
     stopped, close = False, False
     low, high = np.full((m.size, m.size), 1 / p[2]), np.full((m.size, m.size), np.inf)
     for axis in (0, 1):
@@ -110,7 +113,7 @@ def visibility(m, p, layers, gap, solid):
         if solid:
             answers.append(insides(m, p, sample, layers))
         stopped = any(s for s, _ in answers)
-        # An answer close to its bound may be rounded to the other one, whatever the others say.
+        # An answer close to its limit may be rounded to the opposite, whatever the other answers are.
         sure = sure and not any(close for _, close in answers)
         count += not stopped
     return count / ACROSS**2, sure

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Methods with a map from each light sample, against numpy: accumulate (Heckbert and Herf 1997), the mean of hard shadows, and
-deep-penumbra (St-Amour, Paquette and Poulin 2005), which along the ray through a texel's centre counts, at every depth, the samples
-whose map shows nothing nearer. Scenes and maps are those of backprojection.py and layers.py; V is that of the floor.
+"""Compares methods with a map from each light sample with numpy: accumulate (Heckbert and Herf 1997), the mean of hard
+shadows, and deep-penumbra (St-Amour, Paquette and Poulin 2005), which along the ray through a texel's centre counts, at
+every depth, the samples whose map shows nothing nearer. Scenes and maps are those of backprojection.py and layers.py; V
+is that of the floor.
 
-V is a whole number of samples. Pixels are left out where rounding may choose another texel, and where a texel's centre is within
-1/128 texel of an outline."""
+V is a whole number of samples. Pixels are left out if rounding may choose another texel, or if a texel's centre is
+within 1/128 texel of an outline."""
 
 import sys
 import unittest
@@ -16,7 +17,7 @@ from backprojection import CASTERS, Map, local, parallelogram, scene_of
 from layers import ACROSS, BORDER, sample_points, window
 
 SIZE, BIAS = 61, 0.5
-# From each sample the window ends elsewhere on the plate, and texels are no others' texels.
+# The window of each sample ends at another place on the plate, so that no two maps share texels.
 WIDE = "a plate that receives, too"
 SCENES = CASTERS | {WIDE: [parallelogram((0.552, 3.4, 0.103), (0.41, 0, 0), (0, 0, 0.36))]}
 
@@ -29,7 +30,8 @@ class Sampled:
         self.texel = (upper - self.lower) / SIZE
 
     def sees(self, number, p, depth):
-        """Whether the map of a sample shows nothing before this depth in the texel of p, and whether that is sure."""
+        """Returns whether a sample's map shows nothing nearer than this depth in the texel of p, and whether that is
+        certain."""
         m = self.maps[number]
         at = ((p[:2] - self.points[number]) / p[2] - m.lower) / m.texel
         x, y = np.floor(at).astype(int)
@@ -46,7 +48,7 @@ class Sampled:
         return self.share(p, p[2])
 
     def deep_penumbra(self, p):
-        """V at the depth of the receiver, less the bias, of the ray through its texel's centre."""
+        """Returns V of the ray through the receiver's texel centre, at the receiver's depth minus the bias."""
         at = (p[:2] / p[2] - self.lower) / self.texel
         if (np.abs(at - np.round(at)) < BORDER).any():
             return 0.0, False
@@ -91,7 +93,7 @@ class Twins(unittest.TestCase):
             expected = self.check(f"deep-penumbra, {name}", found, twins, 1e-6)
             sure = np.array([s for _, s in twins])
             differ += (expected != np.array([sampled.accumulate(p)[0] for p in places])[sure]).sum()
-            # Lokovic and Veach 2000: fewer steps, none off by more than the bound.
+            # Lokovic and Veach 2000: fewer steps, none of which is off by more than the bound.
             _, bounded, fewer = self.found(name, "deep-penumbra", bound=0.2)
             off = np.abs(bounded[sure] - expected)
             print(f"  bound=0.2: off by {off.max():.4f}, {fewer['steps']} of {counters['steps']} steps")

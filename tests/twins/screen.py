@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ssao and hbao against numpy, from their papers: Mittring 2007 (as Akenine-Moeller et al. 2008 tell it) and Bavoil et al. 2008.
-Depths of the picture are those of its view samples; the eye's space is the camera's, written down again."""
+"""Compares ssao and hbao with numpy versions from their papers: Mittring 2007 (as Akenine-Moeller et al. 2008 describe
+it) and Bavoil et al. 2008. The picture's depths are those of its view samples; the eye's space is the camera's,
+computed here once more."""
 
 import unittest
 
@@ -20,7 +21,7 @@ DIAGONAL = np.linalg.norm(np.array([3, 2, 3]) - np.array([-3, 0, -3]))
 
 
 class Eye:
-    """The picture's view samples, x to the right, y up, z toward the viewer; not a number in the background."""
+    """The picture's view samples, with x to the right, y up and z toward the viewer; NaN in the background."""
 
     def __init__(self, picture):
         forward = (TARGET - EYE) / np.linalg.norm(TARGET - EYE)
@@ -29,13 +30,13 @@ class Eye:
         axes = np.stack([right, np.cross(right, forward), -forward])
         self.p = np.where(picture.A[..., None] > 0, (picture.P - EYE) @ axes.T, np.nan)
         self.n = picture.N @ axes.T
-        self.focal = 0.5 * PIXELS / np.tan(np.radians(FOV) / 2)  # pixels to a unit at distance 1
+        self.focal = 0.5 * PIXELS / np.tan(np.radians(FOV) / 2)  # pixels for a unit at distance 1
 
     def place(self, q):
         return np.array([0.5 * PIXELS + self.focal * q[0] / -q[2], 0.5 * PIXELS - self.focal * q[1] / -q[2]])
 
     def seen(self, place):
-        """The surface at a place; None in the background and beside the picture."""
+        """Returns the surface at a place; None in the background and outside the picture."""
         x, y = np.floor(place).astype(int)
         if not (0 <= x < PIXELS and 0 <= y < PIXELS) or np.isnan(self.p[y, x, 0]):
             return None
@@ -94,7 +95,7 @@ def hbao(eye, y, x, radius, directions, steps, bias, weight):
 
 class Twins(unittest.TestCase):
     def check(self, method, options, twin, most_off=0.01):
-        """`most_off`: pixels of which a comparison, or a place's pixel, is decided by rounding."""
+        """`most_off`: share of pixels for which rounding decides a comparison, or the pixel of a place."""
         picture = penumbra.render(penumbra.Scene.from_dict(SCENE), size=(PIXELS, PIXELS), method=method,
                                   options={"dither": "off", "radius": "0.08", **options})
         eye, off, judged, soft = Eye(picture), [], 0, 0

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps of a sun that are fitted to what a camera sees, against rays in numpy and exact areas: hard shadows of the sun's middle are wrong
-in fewer pixels as texels shrink, one slice and one tile are the window of the view, filters come to the area, and slices are better
-than one window. Texels' places are not written again here: they are the light's own axes."""
+"""Tests maps of a sun fitted to the camera's view against rays in numpy and exact areas: hard shadows of the sun's
+middle are wrong at fewer pixels as texels shrink, one slice and one tile equal the window of the view, filters approach
+the area, and slices are better than one window. Texels' places are not computed again here: they are the program's
+own."""
 
 import unittest
 
@@ -10,7 +11,7 @@ import numpy as np
 import penumbra
 from filtering import FLOOR, PIXELS, plate
 
-TOWARD = np.array([0.31, -1.0, 0.17])  # how light goes
+TOWARD = np.array([0.31, -1.0, 0.17])  # direction in which the light travels
 EYE, TARGET, FOV, ANGLE = [0.7, 0.55, 2.9], [-0.1, 0.2, 0.2], 50.0, 8.0
 FITS = [{"fit": "view"}, {"fit": "view", "snap": "on"}, {"fit": "view", "body": "frustum"}, {"fit": "cascades"},
         {"fit": "cascades", "body": "frustum"}, {"fit": "tiles"}, {"fit": "tiles", "refine": "queried"}]
@@ -30,7 +31,7 @@ def floor_of(shown):
 
 
 def truth(shown, here):
-    """1 where the ray to the sun's middle meets no plate."""
+    """Returns 1 where the ray to the sun's middle meets no plate."""
     p, lit = shown.P[here], np.ones(here.sum())
     for quad in QUADS:
         at = p - TOWARD / TOWARD[1] * (p[:, 1:2] - quad["center"][1])
@@ -64,7 +65,7 @@ class SunFits(unittest.TestCase):
             self.assertTrue((slice_.V == tile.V).all(), method)
             off = np.abs(slice_.V - view.V)[here]
             print(f"{method}: one slice against the window, {(off > 1e-3).sum()} of {here.sum()} pixels differ")
-            self.assertLess((off > 1e-3).mean(), 0.005, method)  # float32 of two forms of one window
+            self.assertLess((off > 1e-3).mean(), 0.005, method)  # float32 of two formulas for one window
 
     def test_filters_come_to_the_area(self):
         exact = picture({}, "exact")
@@ -84,7 +85,7 @@ class SunFits(unittest.TestCase):
         self.assertLess(mean["view"], mean["receivers"])
         self.assertLess(mean["cascades"], 0.8 * mean["view"])
         self.assertLess(mean["tiles"], mean["view"])
-        half = picture({"fit": "view", "size": "65", "aliasing": "count"}).stats["counters"]  # 63 texels for 126, less the border
+        half = picture({"fit": "view", "size": "65", "aliasing": "count"}).stats["counters"]  # 63 texels, not 126, within the border
         self.assertAlmostEqual(half["aliasingThousandths"] / half["aliasingPixels"] / mean["view"], 2, delta=0.01)
 
     def test_the_cameras_perspective_is_refused(self):

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Maps that are warped, against numpy, from Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and Drettakis 2002 (PSM)
-and Lloyd et al. 2008 (LogPSM), on the scenes and from the eye of fits.py: a pixel is dark where the ray through its texel's centre
-meets a plate before the plane of the pixel's own.
+"""Compares warped maps with numpy, from Wimmer et al. 2004 (LiSPSM), Martin and Tan 2004 (TSM), Stamminger and
+Drettakis 2002 (PSM) and Lloyd et al. 2008 (LogPSM), on the scenes and from the eye of fits.py: a pixel is dark if the
+ray through its texel's centre meets a plate before the plane of the pixel's own surface.
 
-Directions are e = (x, y, depth) below the light; (x, y) / depth is its post-perspective space, where its rays are parallel. PSM is
-written with the camera's 4 x 4 matrix: the line of a ray's image is cut by the plane across the light's image."""
+Directions are e = (x, y, depth) below the light; (x, y) / depth is the light's post-perspective space, where its rays
+are parallel. PSM is written with the camera's 4 x 4 matrix: the line that is a ray's image is cut by the plane
+perpendicular to the light's image."""
 
 import unittest
 
@@ -16,11 +17,12 @@ from fits import EYE, FOV, HAIR, NAMES, TARGET, Seen
 from hard import depths
 
 FOCUS = 0.25  # the program's default
-SPARE = 1  # texels that are left free at each end of a map
+SPARE = 1  # texels left free at each end of a map
 
 
 class Perspective:
-    """A perspective along the view's image: across its rows as they are, along them (n + d)/d of the way or its logarithm."""
+    """A perspective along the view's image. Rows across it stay straight; along it, a row at y goes to
+    (n + d) y / (d (n + y)), or to the logarithm of that perspective."""
 
     def __init__(self, fit, seen, size):
         self.size, self.logarithmic = size, fit == "logpsm"
@@ -46,8 +48,9 @@ class Perspective:
         self.lower, self.width = places.min(axis=0), places.max(axis=0) - places.min(axis=0)
 
     def optimal(self, seen, sine):
-        """d / (sqrt(z1 / z0) - 1), with the view depths z0 of the nearest point and z1 of the far end of the map in the nearest point's
-        plane across the light: Wimmer and Scherzer 2006, the same as (z0 + sqrt(z0 z1)) / sine."""
+        """Returns d / (sqrt(z1 / z0) - 1), with the view depths z0 of the nearest point and z1 of the far end of the
+        map in the plane through the nearest point perpendicular to the light: Wimmer and Scherzer 2006, the same as (z0
+        + sqrt(z0 z1)) / sine."""
         depths = (seen.points - seen.eye) @ seen.forward
         nearest = depths.argmin()
         z0 = depths[nearest]
@@ -82,15 +85,16 @@ class Camera:
         images = np.column_stack([seen.points, np.ones(len(seen.points))]) @ rows.T
         images = images[:, :3] / images[:, 3:]
         middle = (images.min(axis=0) + images.max(axis=0)) / 2
-        light = rows[:, 3]  # of e = 0
-        # From the light's image at light[:3] / light[3] through the middle.
+        light = rows[:, 3]  # image of e = 0
+        # The direction from the light's image at light[:3] / light[3] through the middle.
         v = middle * light[3] - light[:3]
         v /= np.linalg.norm(v)
         up = np.array([0, 0, 1.0]) if abs(v[2]) < 0.9 else np.array([0, 1.0, 0])
         up = up - v * (v @ up)
         up /= np.linalg.norm(up)
         plane = np.append(v, -v @ middle)
-        # light + t direction on the plane, for every direction e: t = -(plane . light) / (plane . direction).
+        # The point light + t direction is on the plane, for every direction e, if t = -(plane . light) / (plane .
+        # direction).
         directions = rows[:, :3]
         image = np.outer(light, plane @ directions) - (plane @ light) * directions
         self.matrix = np.stack([np.append(np.cross(up, v), 0) @ image, np.append(up, 0) @ image, image[3]])
@@ -113,8 +117,8 @@ class Camera:
 
 
 class Floor:
-    """A floor alone, seen by a camera of 4 : 3 from above it, under a light whose rays meet the view's axis at an angle of `degrees`: from
-    behind the eye (sign 1) or towards it (-1)."""
+    """Only a floor, seen from above by a camera of 4 : 3, under a light whose rays meet the view's axis at an angle of
+    `degrees`: from behind the eye (sign 1) or toward it (-1)."""
 
     WIDE, HIGH, FAR, FOV = 96, 72, 40.0, 45.0
 
@@ -123,7 +127,7 @@ class Floor:
         forward = (target - eye) / np.linalg.norm(target - eye)
         right = np.array([1.0, 0, 0])
         upward = np.cross(right, forward)
-        light = sign * np.cos(np.radians(degrees)) * forward - np.sin(np.radians(degrees)) * upward  # the way of its rays
+        light = sign * np.cos(np.radians(degrees)) * forward - np.sin(np.radians(degrees)) * upward  # direction in which its rays travel
         lamp = eye + 12 * forward - self.FAR * light
         frame = np.array([right, np.cross(light, right), light])
         turn = lambda x: np.asarray(x) @ frame.T
@@ -151,7 +155,7 @@ class Floor:
         return np.where(ray[..., 1:2] < 0, at, np.inf)
 
     def errors(self, map_):
-        """m of every point: the longer column of the inverse of the change of texels by pixels."""
+        """Returns m at every point: the longer column of the inverse of the change of texels per pixel."""
         here = np.array([map_.texel(e) for e in self.points])
         change = np.stack([np.array([map_.texel(e + 1e-4 * step) for e, step in zip(self.points, steps)]) - here
                            for steps in self.steps], axis=-1) / 1e-4
@@ -213,7 +217,7 @@ class Twins(unittest.TestCase):
                 self.assertGreater(judged, 200)
                 self.assertGreater(dark, 20)
                 otherwise += moved
-                # Outlines within 1/256 texel of a centre are the rasteriser's.
+                # Outlines within 1/256 texel of a centre are left to the rasteriser.
                 self.assertLessEqual(len(off), 1, (fit, name, off[:5]))
         self.assertGreater(otherwise, 30, "another map would be found")
 

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using tests::BitsFile, tests::read_bits;
 
-/// The whole file at once.
+/// Writes the whole file at once.
 void write_bits(const fs::path& path, const glm::dvec3& origin, const ViewSamples& samples, const Light& light,
                 std::span<const std::uint32_t> masks) {
   BitsWriter writer(path, origin, samples, light);
@@ -26,7 +26,7 @@ void write_bits(const fs::path& path, const glm::dvec3& origin, const ViewSample
   writer.commit();
 }
 
-/// 2 × 2 pixels, 33 light samples: two words a pixel, of which the second has one bit.
+/// Pictures of 2 × 2 pixels, 33 light samples: two words for each pixel; the second word has one bit.
 struct Sample {
   ViewSamples samples;
   Light light;
@@ -67,7 +67,7 @@ TEST_F(BitsFileTest, HasTheLayoutOfItsDescription) {
   write_bits(path_, sample.origin, sample.samples, sample.light, sample.masks);
   const std::string text = bytes();
   ASSERT_EQ(text.substr(0, 23), "penumbra-bits/1 2 2 33\n");
-  // 23 + 3·8 origin + 33·12 points + 4 pixels of 12 + 4 + 2·4
+  // Header of 23 bytes, origin 3·8, 33·12 of points, 4 pixels of 12 + 4 + 2·4.
   ASSERT_EQ(text.size(), 23u + 24 + 396 + 4 * 24);
   EXPECT_EQ(value_at<double>(text, 23), 0.1);
   EXPECT_EQ(value_at<double>(text, 39), -3e10);

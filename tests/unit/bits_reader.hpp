@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// `--bits` files as tests read them; visibility/masks/bits_file.hpp has the format.
+// Reads `--bits` files for tests; visibility/masks/bits_file.hpp has the format.
 
 #include "base/assert.hpp"
 #include "base/error.hpp"
@@ -26,16 +26,16 @@ struct BitsFile {
   std::uint32_t width = 0, height = 0, sample_count = 0;
   glm::dvec3 origin{0};
   std::vector<glm::vec3> light_points;
-  std::vector<glm::vec3> p;  ///< one a pixel, like the next
+  std::vector<glm::vec3> p;  ///< one for each pixel, as is `triangle`
   std::vector<std::int32_t> triangle;
-  std::vector<std::uint32_t> masks;  ///< words_per_mask() a pixel
+  std::vector<std::uint32_t> masks;  ///< words_per_mask() words for each pixel
 
   [[nodiscard]] std::uint32_t words_per_mask() const { return (sample_count + 31) / 32; }
 };
 
 namespace bits_reader {
 
-/// Takes value after value from the front; the caller has checked that they are there.
+/// Reads values one after another from the front; the caller has checked that there are enough bytes.
 class Reader {
  public:
   explicit Reader(std::span<const char> bytes) : bytes_(bytes) {}
@@ -52,7 +52,7 @@ class Reader {
 
 }  // namespace bits_reader
 
-/// Throws InputError for what is no such file, or one that is too short or too long.
+/// Throws InputError for a file of another format, or one that is too short or too long.
 inline BitsFile read_bits(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw InputError("cannot read \"{}\"", path.string());

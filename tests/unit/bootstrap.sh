@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Tests which packages cmake/bootstrap.sh installs, with a dpkg-query and an apt-get of this test's own. bootstrap.sh
-# SOURCE WORK
+# Tests which packages cmake/bootstrap.sh installs, with a replacement of dpkg-query and of apt-get.
+# Usage: bootstrap.sh SOURCE WORK
 set -euo pipefail
 source=$1 work=$2
 rm -rf -- "$work"
@@ -11,7 +11,8 @@ export WORK
 export PATH=$WORK/bin:$PATH
 
 printf 'there\nheld\nremoved\nhalf\nbroken\nunknown\nthere-too\n\nof-tests\nof-tests-there\n\nof-long-tests\n' >"$work/root/packages.txt"
-# The format is that of dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n': what is wanted, what is, what is broken.
+# The format is that of dpkg-query -W -f='${db:Status-Abbrev} ${Package}\n': the first letter is the wanted state, the
+# second the actual one, a third marks errors.
 cat >"$work/dpkg" <<'END'
 ii  there
 hi  held
@@ -35,7 +36,7 @@ printf '#!/bin/bash\nexec "$@"\n' >"$work/bin/sudo"
 chmod +x "$work"/bin/*
 
 failed=0
-# expect CALL PACKAGES: what apt-get is asked to install; '' where it must not be called.
+# expect CALL PACKAGES: expects that CALL makes apt-get install PACKAGES; '' if apt-get must not be called.
 expect() {
   local asked
   rm -f "$work/apt"
@@ -55,7 +56,7 @@ printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  
 expect install_packages ''
 [[ ! -s $work/said ]] || { echo "not quiet where nothing is missing" >&2; failed=1; }
 
-# Package lists that are too old: that they are fetched is said, and how far a slow installation is.
+# Package lists that are too old: the script says that it fetches them, and reports the progress of a slow installation.
 printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' >"$work/dpkg"
 cat >"$work/bin/apt-get" <<'END'
 #!/bin/bash
@@ -74,7 +75,7 @@ for said in 'installing 1 packages and what they need: there-too' 'apt-get updat
   grep -qF "$said" "$work/said" || { echo "not said: $said" >&2; cat "$work/said" >&2; failed=1; }
 done
 
-# Lines come through, with what the pipeline's first command ends with; silence is broken.
+# Lines pass through, and so does the exit status of the pipeline's first command; silence is broken.
 # shellcheck disable=SC2034
 (root=$WORK/root && source "$source/cmake/bootstrap.sh" && (echo a; sleep 9; echo b; exit 7) | never_silent 'goes on') \
   >"$work/lines" 2>"$work/said" && { echo "a failure gets lost" >&2; failed=1; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sorting in linear time on all cores: against what std::stable_sort and a search from the front make of it.
+// Sorting in linear time on all cores, compared with std::stable_sort and with a search from the front.
 
 #include "base/buckets.hpp"
 
@@ -96,14 +96,14 @@ TEST(Buckets, AreTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Pages, ListsHaveTheirSizeAndHoldZeros) {
-  for (const std::size_t count : {0U, 1U, 5000U, 3000000U}) {  // the last: several pieces that pages are asked for in
+  for (const std::size_t count : {0U, 1U, 5000U, 3000000U}) {  // the last one needs several pieces of pages
     std::vector<std::uint32_t> list;
     resize_on_all_cores(list, count);
     ASSERT_EQ(list.size(), count);
     EXPECT_TRUE(std::ranges::all_of(list, [](std::uint32_t x) { return x == 0; }));
   }
   struct Big {
-    std::array<double, 40> values{1.0};  // no divisor of a page
+    std::array<double, 40> values{1.0};  // not a divisor of a page's size
   };
   std::vector<Big> list;
   resize_on_all_cores(list, 40000);
@@ -116,7 +116,7 @@ TEST(Pages, ListsOfNoSetValuesKeepWhatIsWritten) {
     UnsetList<std::uint32_t> list;
     list.resize(count);
     for (std::size_t i = 0; i < count; ++i) list[i] = static_cast<std::uint32_t>(i * 7);
-    list.resize(2 * count);  // moves
+    list.resize(2 * count);  // moves the list
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(list[i], static_cast<std::uint32_t>(i * 7));
     const UnsetList<std::uint32_t> copy = list, two = {3, 4}, filled(count, 9U);
     EXPECT_TRUE(std::ranges::equal(std::span(copy).first(count), std::span(list).first(count)));
@@ -127,7 +127,7 @@ TEST(Pages, ListsOfNoSetValuesKeepWhatIsWritten) {
   EXPECT_THROW(list.resize(SIZE_MAX / 8), std::exception);
 }
 
-#ifndef PENUMBRA_SHADOW_MEMORY  // which brings its own operator new
+#ifndef PENUMBRA_SHADOW_MEMORY  // a build with it brings its own operator new
 TEST(Pages, LargeArraysOfAnyListBeginAtALargePage) {
   for (const std::size_t bytes : {kLargeArray, kLargeArray + 1, 17 * kLargeArray + 5}) {
     const std::vector<char> list(bytes, 'x');

@@ -11,7 +11,7 @@
 
 namespace penumbra::tests {
 
-/// A scene's soft shadow volumes for its first light beside its exact areas.
+/// Soft shadow volumes and exact areas of a scene's first light.
 struct CoverageStage {
   explicit CoverageStage(const scenes::Scene& scene)
       : floats(visibility::make_scene_floats(scene)),
@@ -24,7 +24,7 @@ struct CoverageStage {
   CoverageStage(const CoverageStage&) = delete;
   CoverageStage& operator=(const CoverageStage&) = delete;
 
-  /// Returns p on the carrier, triangle 0, seen from above.
+  /// Returns p as a point on the carrier, triangle 0, seen from above.
   [[nodiscard]] volumes::LitPoint lit(const glm::vec3& p) const {
     const areas::Receiver receiver = receiver_at(floats, p);
     return {receiver.p, receiver.carrier, receiver.facing};
@@ -45,7 +45,7 @@ struct CoverageStage {
   areas::ExactArea area;
 };
 
-/// A shape's triangles as corners, for add_object.
+/// Returns a shape's triangles as corners, for add_object.
 inline std::vector<Corners> corners_of(const mesh::TriangleSoup& soup) {
   std::vector<Corners> result;
   for (const mesh::Triangle& t : soup.triangles) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests which name a misspelt one is taken for.
+// Tests which known name is suggested for a misspelt one.
 
 #include "base/did_you_mean.hpp"
 
@@ -10,11 +10,11 @@ namespace {
 
 TEST(DidYouMean, TheNearestNameIfAThirdOfItsLettersDifferAtMost) {
   const std::vector<std::string> names = {"render", "compare", "key"};
-  EXPECT_EQ(did_you_mean("rendr", names), "; did you mean render?");      // one left out
-  EXPECT_EQ(did_you_mean("comparee", names), "; did you mean compare?");  // one too many
-  EXPECT_EQ(did_you_mean("remdet", names), "; did you mean render?");     // two of six
-  EXPECT_EQ(did_you_mean("kay", names), "; did you mean key?");           // one of three
-  EXPECT_EQ(did_you_mean("remdex", {"rendering"}), "");                   // four of nine
+  EXPECT_EQ(did_you_mean("rendr", names), "; did you mean render?");      // one letter is missing
+  EXPECT_EQ(did_you_mean("comparee", names), "; did you mean compare?");  // one letter too many
+  EXPECT_EQ(did_you_mean("remdet", names), "; did you mean render?");     // two of six differ
+  EXPECT_EQ(did_you_mean("kay", names), "; did you mean key?");           // one of three differs
+  EXPECT_EQ(did_you_mean("remdex", {"rendering"}), "");                   // four of nine differ
   EXPECT_EQ(did_you_mean("ka", names), "");
   EXPECT_EQ(did_you_mean("", names), "");
   EXPECT_EQ(did_you_mean("render", {}), "");

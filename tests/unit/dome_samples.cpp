@@ -66,7 +66,7 @@ TEST(DomeFrames, AnotherUpTakesTheShortestTurn) {
   }
 }
 
-/// Each of the eight octants has its share, and each direction is of unit length.
+/// Each of the eight octants has an equal number of samples, and each direction is of unit length.
 TEST(DomeSamplesMade, OfOneRadianceAreSpreadEvenly) {
   const Light light = dome_of(tests::dome_light(), 1024);
   std::array<int, 8> octants{};
@@ -93,8 +93,8 @@ TEST(DomeSamplesMade, OfHalfADomeLieAboveItsPlane) {
   }
 }
 
-/// A face's middle is its direction, light travels along u × v, and the faces together cover all directions: each is in
-/// the square of one face.
+/// A face's middle is its direction, light travels along u × v, and the faces together cover all directions once: each
+/// direction is in the square of exactly one face.
 TEST(DomeFacesMade, CoverAllDirectionsOnce) {
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
@@ -123,7 +123,7 @@ TEST(DomeFacesMade, CoverAllDirectionsOnce) {
   }
 }
 
-/// The faces' light samples together are those of the dome: in the order of faces, at the same places.
+/// The faces' light samples together are those of the dome, in the order of faces and at the same places.
 TEST(DomeFacesMade, ShareTheLightSamples) {
   const Light light = dome_of(tests::dome_light(), 300);
   std::size_t count = 0;
@@ -138,7 +138,7 @@ TEST(DomeFacesMade, ShareTheLightSamples) {
   EXPECT_EQ(count, light.sample_count());
 }
 
-/// A picture of 8 x 4: 1 everywhere except for one texel of `bright`, (5, 1) from the top left.
+/// A dome with a picture of 8 x 4: 1 everywhere except for one texel of value `bright`, (5, 1) from the top left.
 scenes::AreaLight with_bright_texel(float bright, bool half) {
   scenes::AreaLight source = tests::dome_light({.half = half});
   source.texture = scenes::Texture{"made by hand", 8, 4, std::vector<glm::vec3>(32, glm::vec3(1))};
@@ -146,7 +146,8 @@ scenes::AreaLight with_bright_texel(float bright, bool half) {
   return source;
 }
 
-/// Shares of light samples are shares of power: ∫ luminance dω of each texel is 2π / 8 (cos of its borders).
+/// Each texel has light samples in proportion to its power: ∫ luminance dω of a texel is 2π / 8 times the difference of
+/// the cosines of its borders.
 TEST(DomePictures, HaveSamplesInProportionToTheirLight) {
   for (const bool half : {false, true}) {
     constexpr float kBright = 100;
@@ -159,7 +160,7 @@ TEST(DomePictures, HaveSamplesInProportionToTheirLight) {
       const double turn = 0.5 + std::atan2(d.x, -d.z) / (2 * pi);
       const bool in_texel = d.y > 0 && d.y < std::cos(pi / 4) && turn > 5.0 / 8 && turn < 6.0 / 8;
       inside += in_texel ? 1 : 0;
-      EXPECT_NEAR(light.sample_colors[j].r, 1, 1e-6);  // over its own luminance
+      EXPECT_NEAR(light.sample_colors[j].r, 1, 1e-6);  // colours are relative to their own luminance
     }
     EXPECT_NEAR(inside, 1024 * kBright * texel / all, 3);
   }
@@ -171,7 +172,7 @@ TEST(DomePictures, OfBlackTexelsAreRefused) {
   EXPECT_THROW(dome_of(source, 16), InputError);
 }
 
-/// V is the sum of the cosines of visible light samples over that of all above the plane.
+/// V is the sum of the cosines of the visible light samples, divided by that of all samples above the plane.
 TEST(DomeShares, WeighByCosines) {
   const Light light = dome_of(tests::dome_light(), 64);
   std::mt19937 random(4);

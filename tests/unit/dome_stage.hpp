@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Scenes under a dome, and the methods that do domes, without a device.
+// Scenes under a dome, and the methods that support domes, without a device.
 
 #include "base/error.hpp"
 #include "reference/methods.hpp"
@@ -33,7 +33,7 @@ inline scenes::AreaLight dome_light(const scenes::Dome& dome = {}) {
 
 using MadeMethod = std::unique_ptr<visibility::Method>;
 
-/// Methods that give masks.
+/// Returns the methods that give masks.
 inline std::vector<std::pair<std::string, MadeMethod>> dome_mask_methods() {
   const render::Machine machine;
   std::vector<std::pair<std::string, MadeMethod>> methods;
@@ -43,7 +43,7 @@ inline std::vector<std::pair<std::string, MadeMethod>> dome_mask_methods() {
   return methods;
 }
 
-/// Methods that give areas.
+/// Returns the methods that give areas.
 inline std::vector<std::pair<std::string, MadeMethod>> dome_area_methods() {
   std::vector<std::pair<std::string, MadeMethod>> methods;
   methods.emplace_back("rows=exact", volumes::make_edge_scatter(render::Machine(), {{"rows", "exact"}}));
@@ -51,7 +51,7 @@ inline std::vector<std::pair<std::string, MadeMethod>> dome_area_methods() {
   return methods;
 }
 
-/// V, and masks or form factors, of a whole picture.
+/// Masks, or form factors, of a whole picture.
 struct DomeAnswer {
   Masks masks;
   std::vector<glm::dvec3> form_factors;

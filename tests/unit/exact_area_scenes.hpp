@@ -16,9 +16,10 @@
 
 namespace penumbra::tests {
 
-constexpr double kFrameSize = 32;  ///< two specks at ± this make the origin 0
+constexpr double kFrameSize = 32;  ///< two specks at plus and minus this size make the origin 0
 
-/// The carrier is triangle 0: horizontal, at `height`, seen from above; specks that cast no shadow hold the origin.
+/// A scene whose carrier is triangle 0: horizontal, at `height`, seen from above. Specks that cast no shadow fix the
+/// origin.
 inline scenes::Scene area_scene(const std::vector<Corners>& occluders, double height = 0) {
   scenes::Scene scene;
   add_object(scene, "floor", {{glm::dvec3(-30, height, -30), {-30, height, 30}, {30, height, 30}}});
@@ -35,7 +36,7 @@ inline double random_dyadic(std::mt19937& random, double low, double high, doubl
   return step * std::uniform_int_distribution<int>(from, to)(random);
 }
 
-/// A view sample at p on the carrier, seen from the side where the light is.
+/// A view sample at p on the carrier, seen from the light's side.
 inline areas::Receiver receiver_at(const visibility::SceneFloats& floats, const glm::vec3& p) {
   const auto [a, b, c] = floats.corners(0);
   const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));

@@ -10,8 +10,8 @@
 
 namespace penumbra::tests {
 
-/// Triangles on a coarse lattice between, around, above and below the floor (at −1) and the light (at 3): many share
-/// vertices and edges, cross, coincide, touch p's and the light's plane, or have no area.
+/// Returns triangles on a coarse lattice between, around, above and below the floor (at −1) and the light (at 3): many
+/// share vertices and edges, cross, coincide, touch the plane of p or of the light, or have no area.
 inline std::vector<Corners> lattice_soup(std::mt19937& random, int count, double step = 0.5) {
   std::vector<Corners> soup;
   const auto corner = [&] {
@@ -20,7 +20,7 @@ inline std::vector<Corners> lattice_soup(std::mt19937& random, int count, double
   };
   while (static_cast<int>(soup.size()) < count) {
     const Corners corners{corner(), corner(), corner()};
-    // Strips: the next triangle shares two corners.
+    // Pairs of a strip: the next triangle shares two corners.
     soup.push_back(corners);
     soup.push_back({corners[1], corners[2], corner()});
   }
@@ -41,7 +41,7 @@ inline scenes::Scene soup_scene(const std::vector<Corners>& soup, Lamp lamp) {
   return scene;
 }
 
-/// Returns a receiver; a third of them lie on the lattice of the corners.
+/// Returns the position of a receiver; a third of them lie on the lattice of the corners.
 inline glm::vec3 soup_receiver(std::mt19937& random) {
   const double step = std::uniform_int_distribution<int>(0, 2)(random) == 0 ? 0.5 : 1.0 / 64;
   return {random_dyadic(random, -2, 2, step), -1, random_dyadic(random, -2, 2, step)};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `exact` as a method: pixels asked for and not, rules, options, the same bits however it is cut in tiles.
+// Tests the method `exact`: only the wanted pixels get values, rules, options, and the same bits however a picture is
+// divided into tiles.
 
 #include "reference/methods.hpp"
 
@@ -59,10 +60,10 @@ TEST(ExactMethod, OnlyWantedPixelsAreEvaluatedAndTheyAreTheSame) {
 }
 
 TEST(ExactMethod, TheRayCasterComesNearIt) {
-  // Rows of 64 × 64 light samples, one convex occluder. Along a row what is hidden is an interval, and the number of
-  // points in it is off by less than one of 64. Across the rows its length rises once and falls once, by at most 1
-  // each: the midpoint rule is off by at most half a row times that variation, 1/2 · 1/64 · 2. (Moving a row's points
-  // along it changes neither.)
+  // Rows of 64 × 64 light samples, one convex occluder. In each row the hidden part is an interval, and the number of
+  // samples in it is wrong by less than one of 64. From row to row its length rises once and falls once, by at most 1
+  // each: the midpoint rule is wrong by at most half a row times that variation, 1/2 · 1/64 · 2. (Moving a row's
+  // samples along the row changes neither.)
   const Stage stage(board_over_floor(), 32, 24, {4096, 0, 0, visibility::SamplePattern::rows, 0});
   const auto method = make_exact({});
   const std::vector<float> exact = evaluate(stage, *method, 8);
@@ -80,7 +81,8 @@ TEST(ExactMethod, RefusesOptionsThatItDoesNotHave) {
   EXPECT_THROW(make_exact({{"kernel", "exact"}}), UsageError);
   const Stage stage(board_over_floor(), 8, 8);
   const auto rounded = make_exact({}), rational = make_exact({{"sweep", "rational"}});
-  EXPECT_EQ(evaluate(stage, *rounded, 8), evaluate(stage, *rational, 8));  // float32 of numbers within 1e-12
+  EXPECT_EQ(evaluate(stage, *rounded, 8),
+            evaluate(stage, *rational, 8));  // float32 of numbers that differ by at most 1e-12
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of its own for each test, gone afterwards.
+/// Each test has its own folder, deleted afterwards.
 class Exr : public testing::Test {
  protected:
   Exr() {
@@ -54,7 +54,8 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-/// 37 × 21 (no multiple of ZIP's 16 lines) with values that a lossy or half-precision writer would change.
+/// An image of 37 × 21 pixels (not a multiple of ZIP's 16 lines) with values that a lossy or half-precision writer
+/// would change.
 struct Sample {
   static constexpr std::uint32_t kWidth = 37, kHeight = 21;
   std::vector<float> v;
@@ -81,8 +82,8 @@ struct Sample {
   }
 };
 
-/// A scene of a hundred thousand lights has four times as many channels. (OpenEXR's library looks at all for each that
-/// is added: minutes.)
+/// A scene of a hundred thousand lights has four times as many channels. (OpenEXR's own library looks at all
+/// earlier channels whenever one is added, which would take minutes.)
 TEST_F(Exr, ManyChannelsTakeLittleTime) {
   constexpr int kMany = 200'000;
   const std::vector<float> value = {0.5F};
@@ -96,7 +97,7 @@ TEST_F(Exr, ManyChannelsTakeLittleTime) {
   EXPECT_EQ(read.floats.at("light77777.V"), value);
 }
 
-/// Cut off anywhere, or without the attribute, it is not what was written.
+/// A file that is cut off anywhere, or lacks the attribute, is not taken for a whole one.
 TEST_F(Exr, ThatIsWholeCanBeTold) {
   std::vector<float> values(64 * 40);
   std::mt19937 random(7);
@@ -148,7 +149,7 @@ TEST_F(Exr, ValuesMadeLineByLineAreThoseOfAnArray) {
   EXPECT_EQ(bytes_of(file("lines.exr")), bytes_of(file("array.exr")));
 }
 
-/// Every other block of 16 lines is noise, which ZIP cannot make smaller: those are stored as they are.
+/// Every other block of 16 lines is noise, which ZIP cannot make smaller: such blocks are stored uncompressed.
 TEST_F(Exr, BlocksOfNoiseAndOfNoneComeBack) {
   constexpr std::uint32_t kWidth = 33, kHeight = 16 * 40 + 5;
   std::vector<std::uint32_t> noise, calm;
@@ -168,7 +169,7 @@ TEST_F(Exr, BlocksOfNoiseAndOfNoneComeBack) {
   const ExrFile back = read_exr(file());
   EXPECT_EQ(back.integers.at("a"), noise);
   EXPECT_EQ(back.integers.at("b"), calm);
-  EXPECT_LT(fs::file_size(file()), noise.size() * 8 * 3 / 4);  // half of it is calm
+  EXPECT_LT(fs::file_size(file()), noise.size() * 8 * 3 / 4);  // the other half compresses well
 }
 
 TEST_F(Exr, IsAPlainScanLineZipImageForOthers) {
@@ -206,11 +207,11 @@ TEST_F(Exr, OtherCompressionsKeepEveryBit) {
   }
 }
 
-/// Half floats have ten bits behind the point, are subnormal below 2^-14, and round to infinity from 65520 on.
+/// Half floats have ten bits after the point, are subnormal below 2^-14, and round to infinity from 65520 on.
 TEST_F(Exr, HalfIsTheNearestOfSixteenBits) {
   const std::vector<std::pair<float, float>> pairs = {
       {1.0f / 3, 1365.0f / 4096},
-      {2049, 2048},  // between two: the even one
+      {2049, 2048},  // half way between two: rounds to the even one
       {2051, 2052},
       {-0.0f, -0.0f},
       {0x1p-24f, 0x1p-24f},
@@ -245,7 +246,7 @@ TEST_F(Exr, HalfIsTheNearestOfSixteenBits) {
   }
 }
 
-/// DWAA would take "P.Y" for a luminance, and rounds colours: those may be off by little, all else by nothing.
+/// DWAA would treat "P.Y" as a luminance. It rounds colours: they may differ a little, all other channels not at all.
 TEST_F(Exr, DwaaIsLossyForColoursAlone) {
   constexpr std::uint32_t kSide = 70;  // more than two blocks of 32 lines
   std::vector<glm::vec3> p, colour;
@@ -304,7 +305,7 @@ TEST_F(Exr, DwaaIsLossyForColoursAlone) {
 TEST_F(Exr, SameImageGivesSameBytes) {
   const Sample sample;
   write_exr(file("a.exr"), sample.image);
-  ExrImage shuffled = sample.image;  // the order in which channels were added must not show either
+  ExrImage shuffled = sample.image;  // nor may the order in which channels were added show
   std::swap(shuffled.channels.front(), shuffled.channels.back());
   write_exr(file("b.exr"), shuffled);
   EXPECT_EQ(bytes_of(file("a.exr")), bytes_of(file("b.exr")));

@@ -19,20 +19,22 @@ namespace {
 
 using tests::Stage;
 
-/// A board over the left of a floor, and over its right a flap of the floor's own object; both overlap in the middle.
+/// A floor, a board over its left, and over its right a flap that belongs to the floor's own object; board and flap
+/// overlap in the middle.
 scenes::Scene board_and_flap() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
   tests::add_object(scene, "board", tests::quad({-1, 1, 0}, {1.5, 0, 0}, {0, 0, -1.5}));
   tests::add_object(scene, "flap", tests::quad({1, 1.5, 0}, {1.5, 0, 0}, {0, 0, -1.5}));
-  std::ranges::replace(scene.soup.object, 2U, 0U);  // the flap is the floor's
+  std::ranges::replace(scene.soup.object, 2U, 0U);  // the flap becomes part of the floor's object
   scene.objects.pop_back();
   scene.lights.push_back(tests::ceiling_light(4, 0.7));
   scene.cameras.push_back(tests::camera({0, 0.9, 7}, {0, 0, 0}));
   return scene;
 }
 
-/// Every light sample against every triangle, by exact predicates: is there one whose object hides it?
+/// Tests every light sample against every triangle with exact predicates: do triangles of the pixel's own object hide
+/// one, and do others?
 HiddenBy by_exact_predicates(const Stage& setup, std::size_t pixel) {
   HiddenBy hidden;
   for (const bool own : {true, false}) {
@@ -66,7 +68,7 @@ TEST(HidingObjects, AreThoseThatExactPredicatesFind) {
     EXPECT_LE(found[i].own, truth.own) << pixels[i];
     EXPECT_LE(found[i].other, truth.other) << pixels[i];
     EXPECT_EQ(found[i].own || found[i].other, truth.own || truth.other) << pixels[i];
-    // Sixteen of the light samples are asked about both, so a second object that hides less can be missed.
+    // Only sixteen light samples are tested for both, so a second object that hides less can be missed.
     missed += found[i].own != truth.own || found[i].other != truth.other ? 1 : 0;
   }
   EXPECT_GT(both, 20);
@@ -75,8 +77,8 @@ TEST(HidingObjects, AreThoseThatExactPredicatesFind) {
   EXPECT_LT(missed, both / 4);
 }
 
-/// The board is at a quarter of the segment to the light at height 4, the flap at three eighths: penumbrae of 1/3 and
-/// 3/5 of the light; a segment is as long as the ray to that light sample, times that share.
+/// On a segment to the light, at height 4, the board is at a quarter and the flap at three eighths: penumbrae as wide
+/// as 1/3 and 3/5 of the light. The nearest distance is that share of the distance to the light sample.
 TEST(HidingObjects, AreSoFarAwayAndMakeSoWidePenumbrae) {
   const Stage setup(board_and_flap(), 40, 30);
   std::vector<std::uint32_t> pixels;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The horizon of a view sample, over masks of light samples in rows and in tiles.
+// Tests the cut at a view sample's horizon, on masks of light samples in rows and in tiles.
 
 #include "engines/vectors/horizon.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 
 struct Places {
   LightGrid grid;
-  std::vector<glm::dvec2> st;  // of each light sample, in half sides of the light
+  std::vector<glm::dvec2> st;  // place of each light sample, in half sides of the light
 };
 
 Places in_rows(std::uint32_t rows, std::uint32_t columns, std::mt19937& random) {
@@ -54,20 +54,21 @@ Places in_tiles(std::uint32_t count, std::mt19937& random) {
   return made;
 }
 
-/// Every light sample that is above by more than the error stays as it was, every one that is below is taken out, and
-/// those between are open and taken out.
+/// Expects that samples above the horizon by more than the error keep their bits, samples below it are cleared, and
+/// those within the error are cleared and listed as open.
 void expect_cut(const Places& places, const GridSample& at, std::mt19937& random) {
   const LightGrid& grid = places.grid;
   std::vector<std::uint16_t> bits(mask_words(grid)), before;
   SampleMask mask{bits.data(), 0};
   fill(grid, true, mask);
-  for (std::uint16_t& word : bits) word = static_cast<std::uint16_t>(word & random() & 0xffffU);  // casters
+  for (std::uint16_t& word : bits)
+    word = static_cast<std::uint16_t>(word & random() & 0xffffU);  // as if casters hid some
   mask.count(bits.size());
   before = bits;
   Open open;
   cut_at_horizon(grid, at, open, mask);
   const glm::dvec3 above(at.above);
-  // Float sums are off by six roundings of no more than four times these terms.
+  // The float sums are wrong by six roundings of at most four times these terms.
   const double error = static_cast<double>(at.above_error),
                off = 0x1p-19 * (std::abs(above.x) + std::abs(above.y) + std::abs(above.z));
   std::uint32_t visible = 0;

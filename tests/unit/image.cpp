@@ -26,8 +26,8 @@ TEST(Image, SrgbBytesFollowTheStandardsCurve) {
   EXPECT_EQ(srgb_byte(1.0f), 255);
   EXPECT_EQ(srgb_byte(0.5f), 188);       // 1.055 · 0.5^(1/2.4) − 0.055 = 0.73536; · 255 = 187.5
   EXPECT_EQ(srgb_byte(0.18f), 118);      // 0.46136 · 255 = 117.6
-  EXPECT_EQ(srgb_byte(0.001f), 3);       // the straight part: 12.92 · 0.001 · 255 = 3.29
-  EXPECT_EQ(srgb_byte(0.214041f), 127);  // 0.5 · 255 = 127.5 less a little
+  EXPECT_EQ(srgb_byte(0.001f), 3);       // the linear part: 12.92 · 0.001 · 255 = 3.29
+  EXPECT_EQ(srgb_byte(0.214041f), 127);  // slightly below 0.5 · 255 = 127.5
   EXPECT_EQ(srgb_byte(-1.0f), 0);
   EXPECT_EQ(srgb_byte(1e30f), 255);
   EXPECT_EQ(srgb_byte(std::numeric_limits<float>::infinity()), 255);

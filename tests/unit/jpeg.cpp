@@ -16,7 +16,7 @@
 namespace penumbra {
 namespace {
 
-/// Columns of red and of what is not, at full quality and without fewer samples of colour.
+/// Encodes eight bright columns of the first component, and dark ones, at full quality without chroma subsampling.
 std::vector<std::byte> encoded(std::uint32_t width, std::uint32_t height, J_COLOR_SPACE colors,
                                std::optional<J_COLOR_SPACE> stored = {}, bool adobe = true) {
   jpeg_error_mgr errors{};
@@ -75,15 +75,15 @@ TEST(Jpeg, DecodesColoursAndGrey) {
   }
 }
 
-/// Cyan 250 or 20, the other inks 20. In Adobe's files the numbers are 255 less the ink: red is 250 · 20 / 255 or
-/// 20 · 20 / 255. In other files they are inks: (255 − 250) · (255 − 20) / 255 or 235² / 255. Each of the two factors
-/// is off by at most 2 (the DCT and, in YCCK, the colours round), times the other one, up to 235 / 255: 2 · 2 · 235 /
-/// 255 < 4.
+/// Cyan is 250 or 20, the other inks are 20. In Adobe's files the numbers are 255 minus the ink: red is 250 · 20 / 255
+/// or 20 · 20 / 255. In other files they are inks: red is (255 − 250) · (255 − 20) / 255 or 235² / 255. Each of the two
+/// factors has an error of at most 2 (the DCT and, in YCCK, the colours round), times the other factor / 255, up to 235
+/// / 255: 2 · 2 · 235 / 255 < 4.
 TEST(Jpeg, MixesInks) {
   struct Case {
     std::optional<J_COLOR_SPACE> stored;
     bool adobe;
-    int cyan, other;  ///< red where there is much cyan; all other values
+    int cyan, other;  ///< red in the columns of much cyan; all other values
   };
   for (const Case& inks : {Case{{}, true, 20, 2}, Case{JCS_YCCK, true, 20, 2}, Case{{}, false, 5, 217}}) {
     const RgbaImage image = decode_rgba_jpeg(encoded(16, 9, JCS_CMYK, inks.stored, inks.adobe), 16);

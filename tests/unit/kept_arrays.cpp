@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests which arrays are kept for the next, and how many.
+// Tests which freed arrays are kept for reuse, and how many.
 
 #include "base/kept_arrays.hpp"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::size_t kEighth = KeptArrays::kLeast / 8;
 
-/// Allocates as operator new does.
+/// Allocates as the program's operator new does.
 void* new_or_kept(KeptArrays& arrays, std::size_t bytes) {
   if (void* const kept = arrays.take(bytes)) return kept;
   arrays.settle(bytes, bytes);
@@ -65,7 +65,7 @@ TEST(KeptArrays, AreWithThoseInUseNoMoreThanWasInUseAtOnce) {
       if (first != nullptr) {
         ++taken;
       } else {
-        const std::size_t made = bytes + random() % 500;  // as the C library rounds
+        const std::size_t made = bytes + random() % 500;  // as the C library rounds sizes up
         arrays.settle(bytes, made);
         first = std::malloc(made);
         size_of[first] = made;
@@ -87,7 +87,7 @@ TEST(KeptArrays, AreWithThoseInUseNoMoreThanWasInUseAtOnce) {
   arrays.free_all();
 }
 
-/// The sum that is kept is right again once all is given back, whichever caller took it in between.
+/// The sum of kept bytes is right again after everything has been given back, whichever threads took arrays in between.
 TEST(KeptArrays, MayBeAskedForByAnyThread) {
   KeptArrays arrays;
   arrays.start_keeping();
@@ -98,7 +98,7 @@ TEST(KeptArrays, MayBeAskedForByAnyThread) {
     const bool is_new = first == nullptr;
     if (is_new) first = std::malloc(2000);
     if (is_new) arrays.settle(bytes, 2000);
-    std::memset(first, static_cast<int>(i), 2000);  // nobody else has it
+    std::memset(first, static_cast<int>(i), 2000);  // no other thread has it
     ASSERT_TRUE(std::ranges::all_of(std::span(static_cast<unsigned char*>(first), 2000),
                                     [&](unsigned char x) { return x == static_cast<unsigned char>(i); }));
     if (!arrays.keep(first, 2000)) std::free(first);
@@ -108,7 +108,7 @@ TEST(KeptArrays, MayBeAskedForByAnyThread) {
   EXPECT_EQ(arrays.bytes(), 0U);
 }
 
-#ifndef PENUMBRA_SHADOW_MEMORY  // which brings its own operator new
+#ifndef PENUMBRA_SHADOW_MEMORY  // a build with it brings its own operator new
 TEST(KeptArrays, AreThoseOfEveryList) {
   kept_arrays().start_keeping();
   std::vector<char> list(KeptArrays::kLeast);

@@ -12,7 +12,7 @@
 namespace penumbra::vectors {
 namespace {
 
-/// Triangles, a third of them needles: the edges from their first corner are parallel except for 2⁻³⁰.
+/// Makes triangles, a third of them needles: the edges from their first corner are parallel but for 2⁻³⁰.
 visibility::SceneFloats some_needles(std::uint32_t count) {
   visibility::SceneFloats floats;
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ TEST(KnownNormals, OfNeedlesNoneIsKnown) {
   const visibility::SceneFloats floats = some_needles(kCount);
   const KnownNormals normals(floats);
   std::atomic<std::uint32_t> wrong = 0;
-  for (int turn = 0; turn < 2; ++turn) {  // found, and found again, on all cores
+  for (int turn = 0; turn < 2; ++turn) {  // the second round finds what the first stored, on all cores
     for_each_index(2 * std::size_t{kCount}, [&](std::size_t i) {
       const auto triangle = static_cast<std::uint32_t>(i % kCount);
       if (normals.is_known(triangle) != (triangle % 3 != 0)) ++wrong;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The heap of the program's processes lies in large pages, also after freed memory was given back.
+// The heap of the program's processes lies in large pages, also after freed memory has been given back to the system.
 #include "base/memory.hpp"
 #include "base/pages.hpp"
 
@@ -49,7 +49,7 @@ TEST(LargeHeap, HoldsWhatIsAllocatedAfterItsBeginning) {
   keep_freed_memory();
   // The second round is after the heap's end was given back to the system.
   for (const char* when : {"at first", "after memory was given back"}) {
-    std::vector<void*> blocks;  // more than one large page, in blocks that no free list of the heap has
+    std::vector<void*> blocks;  // more than one large page, in blocks larger than any free list of the heap has
     for (int i = 0; i < 32; ++i) blocks.push_back(std::malloc(std::size_t{1} << 20U));
     EXPECT_TRUE(is_marked(blocks.back())) << when;
     for (void* block : blocks) std::free(block);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light samples in tiles.
+// Tests the sorting of light samples into tiles.
 
 #include "engines/vectors/light_tiles.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 TEST(LightTiles, HoldEachSampleOnce) {
   std::mt19937 random(3);
   for (const std::uint32_t count : {1U, 2U, 16U, 17U, 33U, 256U, 1000U, 4096U, 65536U}) {
-    for (const std::uint32_t different : {1U, 3U, 1U << 20U}) {  // many in one place, or few
+    for (const std::uint32_t different : {1U, 3U, 1U << 20U}) {  // many samples share a place, or few do
       std::vector<glm::vec2> places(count);
       for (glm::vec2& at : places) at = {random() % different, random() % different};
       const LightTiles tiles = make_light_tiles(places);
@@ -66,7 +66,7 @@ TEST(LightTiles, HoldEachSampleOnce) {
   }
 }
 
-/// Light samples at places in 64 cells, and at few places.
+/// Light samples anywhere in 64 cells or, where there are 40 of them, all at one place.
 TEST(LightTiles, AreFoundByStepsToTheRight) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> across(-0.5F, 63.5F), anywhere(-100.0F, 200.0F);
@@ -96,7 +96,7 @@ TEST(LightTiles, AreFoundByStepsToTheRight) {
             ASSERT_GT(end, tile) << x;
           }
         }
-        // The table begins no more than a step too early.
+        // The first tile of the table is at most one step too early.
         if (first > row.first && x < 63) {
           ASSERT_LT(tiles.tile_high[first - 1], x + 0.01F);
         }

@@ -13,7 +13,7 @@
 namespace penumbra::bench {
 namespace {
 
-// Sums and products of numbers up to 5, each rounded by 2⁻⁵³ of itself, a dozen of them.
+// About a dozen sums and products of numbers up to 5, each with a rounding error of 2⁻⁵³ of itself.
 constexpr double kRounding = 12 * 5 * 0x1p-53;
 
 template <typename Shape>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests which casters may meet the disks that a few view samples see of a sphere, against the disks themselves.
+// Tests which casters may meet the disks that some view samples see of a sphere, compared with the disks themselves.
 
 #include "engines/vectors/disk_plane.hpp"
 #include "engines/vectors/light_grid.hpp"
@@ -70,7 +70,7 @@ NearCaster small_caster(const glm::dvec3& at, double size, std::mt19937& random)
   return caster;
 }
 
-// Two view samples one behind the other: the nearer one's disk is parallel to the other's, and 1/2 - 1/4 off it.
+// Two view samples, one behind the other: their disks are parallel, and 1/2 - 1/4 apart.
 TEST(NearCasters, OfDisksOneBehindTheOtherBothAreMet) {
   std::mt19937 random(1);
   const std::vector<NearCaster> casters{small_caster({0, 0, 0.25}, 0.01, random),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what a build without OpenGL says.
+// Tests the errors of a build without OpenGL.
 
 #include "base/error.hpp"
 #include "render/opengl/context.hpp"

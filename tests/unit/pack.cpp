@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lanes that are kept, side by side: every choice of them, on every vector unit that this processor has.
+// Tests that the kept lanes of a vector are stored side by side: every choice of lanes, on every vector unit of this
+// processor.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light samples anywhere as the device has them: in rows, four slots at a time.
+// Tests the device's layout of arbitrary light samples: in rows, four slots at a time.
 
 #include "volumes/scatter/point_rows.hpp"
 
@@ -14,7 +14,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// Returns coordinates in [−1, 1]² with so many different numbers.
+/// Returns coordinates in [−1, 1]² with `different` different numbers.
 std::vector<glm::vec2> coordinates_of(std::mt19937& random, std::uint32_t count, std::uint32_t different) {
   std::vector<glm::vec2> coordinates(count);
   const auto one = [&] {
@@ -25,7 +25,8 @@ std::vector<glm::vec2> coordinates_of(std::mt19937& random, std::uint32_t count,
   return coordinates;
 }
 
-/// Tests where the shader looks for light samples no further left than x: places a little right of a start.
+/// Tests the slot at which the shader starts to look for light samples at x or further right, for places slightly right
+/// of a start.
 void expect_starts(const PointRows& rows, std::uint32_t row, const std::vector<float>& x) {
   for (std::uint32_t start = 0; start < rows.columns * gpu::kStartsPerCell; ++start) {
     const std::uint32_t four = rows.starts[row * rows.columns * gpu::kStartsPerCell + start];
@@ -39,7 +40,7 @@ void expect_starts(const PointRows& rows, std::uint32_t row, const std::vector<f
 TEST(PointRows, HoldEachSampleOnceInItsRow) {
   std::mt19937 random(5);
   for (const std::uint32_t count : {1U, 2U, 3U, 15U, 16U, 17U, 70U, 256U, 1000U, 4096U}) {
-    for (const std::uint32_t different : {1U, 3U, 64U, 1U << 20U}) {  // many in one place, or few
+    for (const std::uint32_t different : {1U, 3U, 64U, 1U << 20U}) {  // many samples share a place, or few do
       const std::vector<glm::vec2> coordinates = coordinates_of(random, count, different);
       const std::uint32_t most = count % 2 == 0 ? 3 : 1024;
       const PointRows rows = make_point_rows(coordinates, most);

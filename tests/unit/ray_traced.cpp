@@ -35,7 +35,7 @@ scenes::Scene board_over_floor() {
 
 TEST(RayTraced, OwnAndCoplanarTrianglesNeverHide) {
   scenes::Scene scene = board_over_floor();
-  scene.objects.back().casts_shadow = false;  // the board; what is left is one plane of 128 triangles
+  scene.objects.back().casts_shadow = false;  // the board casts no shadow; the rest is one plane of 128 triangles
   const Stage setup(scene, 40, 40);
   const Masks masks = trace(setup);
   for (std::size_t pixel = 0; pixel < setup.samples.size(); ++pixel) {
@@ -60,7 +60,7 @@ TEST(RayTraced, ShadowsArePartFullAndAbsent) {
 TEST(RayTraced, BackgroundEmittersAndUnshadowedObjectsHaveEveryBitAndNoMore) {
   scenes::Scene scene = board_over_floor();
   for (std::size_t i = 0; i < 32; ++i) scene.objects[i].receives_shadow = false;
-  for (std::size_t i = 32; i < 64; ++i) scene.objects[i].emits = 0;  // of this light
+  for (std::size_t i = 32; i < 64; ++i) scene.objects[i].emits = 0;  // bodies of this light
   const Stage setup(scene, 40, 40, {37, 0, 0, SamplePattern::jittered, 1});
   const Masks masks = trace(setup);
   for (std::size_t pixel = 0; pixel < setup.samples.size(); ++pixel) {
@@ -88,7 +88,7 @@ TEST(RayTraced, NothingIsVisibleBelowTheHorizonOrBehindTheLight) {
   scene.lights.push_back(tests::ceiling_light(-1, 1));  // under the floor, facing down
   scene.cameras.push_back(tests::camera({0, 5, 1}, {0, 0, 0}));
   EXPECT_EQ(trace(Stage(scene, 8, 8)).visibility, std::vector<float>(64, 0.0f)) << "horizon";
-  scene.lights[0] = tests::rectangle_light({0, 3, 0}, {1, 0, 0}, {0, 0, -1});  // over it, facing up
+  scene.lights[0] = tests::rectangle_light({0, 3, 0}, {1, 0, 0}, {0, 0, -1});  // above it, facing up
   EXPECT_EQ(trace(Stage(scene, 8, 8)).visibility, std::vector<float>(64, 0.0f)) << "behind";
   scene.lights[0].two_sided = true;
   EXPECT_EQ(trace(Stage(scene, 8, 8)).visibility, std::vector<float>(64, 1.0f));

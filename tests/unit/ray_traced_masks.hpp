@@ -44,7 +44,7 @@ inline std::size_t differing_bits(const Masks& a, const Masks& b) {
   return count;
 }
 
-/// `rows_at_once` 0: as many as the method takes.
+/// Returns the masks of all pixels. `rows_at_once` 0: as many rows as the method takes.
 inline Masks trace(const visibility::SceneFloats& floats, const visibility::Light& light,
                    const visibility::ViewSamples& samples, const visibility::MethodOptions& options = {},
                    std::uint32_t rows_at_once = 0) {

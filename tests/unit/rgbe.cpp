@@ -20,7 +20,7 @@ std::string with_header(const std::string& size, const std::string& lines = "FOR
   return "#?RADIANCE\n# a comment\n" + lines + "\n" + size + "\n";
 }
 
-/// Mantissas 128, 64, 32 under the exponent 129: 1, 1/2, 1/4.
+/// Mantissas 128, 64, 32 with the exponent 129: 1, 1/2, 1/4.
 const std::string kPixel("\x80\x40\x20\x81", 4);
 
 TEST(Rgbe, AMantissaTimesTheSharedPowerOfTwo) {

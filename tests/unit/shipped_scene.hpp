@@ -8,7 +8,7 @@
 
 namespace penumbra::tests {
 
-/// Returns a shipped scene. `name`: its file's name without .json.
+/// Returns a shipped scene. `name` is its file's name without .json.
 inline scenes::Scene shipped_scene(const std::string& name) {
   return scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / (name + ".json"));
 }

@@ -1,7 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Tests what ctest is told of an executable's tests (cmake/test_suites.cmake): labels, names, parts, what is skipped and
-# what fails. test_suites.sh SOURCE WORK
+# Tests the list of an executable's suites that ctest gets (cmake/test_suites.cmake): labels, names, parts, skipped and
+# failed tests.
+# Usage: test_suites.sh SOURCE WORK
 set -euo pipefail
 source=$(cd -- "$1" && pwd)
 rm -rf -- "$2"

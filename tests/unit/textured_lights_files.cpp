@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures from files: what each kind of picture means, what is refused and in which words, and that nothing is lost
-// when they are written and read again.
+// Tests textures from files: the meaning of each kind of picture, the messages about refused ones, and that nothing is
+// lost when they are written and read again.
 
 #include "base/exr.hpp"
 #include "scenes/light_texture.hpp"
@@ -19,7 +19,7 @@ namespace {
 using tests::bytes_of;
 using tests::png_file;
 
-/// The light of kLight with more keys.
+/// Returns the light of kLight with additional keys.
 std::string light_with(const std::string& more) {
   const std::string light = kLight;
   return light.substr(0, light.size() - 1) + ", " + more + "}";
@@ -49,7 +49,7 @@ class TexturedLightFiles : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// IEC 61966-2-1, written apart from the program's.
+/// Decodes sRGB by IEC 61966-2-1, independently of the program.
 double srgb(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
@@ -68,7 +68,7 @@ TEST_F(TexturedLightFiles, EightBitsOfColourAreSrgb) {
 }
 
 TEST_F(TexturedLightFiles, SixteenBitsOfGreyAreSrgbToo) {
-  // 0x0101 is 1 in 8 bits; 0x0001 is 257 times darker, less than 8 bits can hold.
+  // 0x0101 is 1 in 8 bits; 0x0001 is 257 times darker, too dark for 8 bits.
   const auto texture = read(png_file(3, 1, 16, 0, {bytes_of({1, 1, 0, 1, 0x80, 0})})).lights[0].texture.value();
   EXPECT_FLOAT_EQ(texture.texels[0].r, static_cast<float>(1 / 255.0 / 12.92));
   EXPECT_FLOAT_EQ(texture.texels[1].g, static_cast<float>(1 / 65535.0 / 12.92));
@@ -94,7 +94,7 @@ TEST_F(TexturedLightFiles, PalettesBitsAndTransparentColoursAreUnderstood) {
 }
 
 TEST_F(TexturedLightFiles, AGammaChunkChangesNothing) {
-  const std::string gamma = tests::png_chunk("gAMA", bytes_of({0, 1, 0x86, 0xa0}));  // 100000: linear, it says
+  const std::string gamma = tests::png_chunk("gAMA", bytes_of({0, 1, 0x86, 0xa0}));  // 100000 declares linear values
   const std::vector<std::string> rows = {bytes_of({128, 64, 32})};
   EXPECT_EQ(read(png_file(1, 1, 8, 2, rows, gamma)).lights[0].texture->texels,
             read(png_file(1, 1, 8, 2, rows)).lights[0].texture->texels);
@@ -107,11 +107,11 @@ TEST_F(TexturedLightFiles, OpenExrIsLinearAndMayBeBrighterThanOne) {
   EXPECT_EQ(color->width, 2u);
   const auto grey = read(exr(4, 1, {"Y"}, values), "t.exr").lights[0].texture;
   EXPECT_EQ(grey->texels, color->texels);
-  // The first bytes of a file say what it is, not its name.
+  // The first bytes of a file, not its name, decide its format.
   EXPECT_EQ(read(exr(2, 2, {"R", "G", "B"}, values), "t.png").lights[0].texture->texels, color->texels);
 }
 
-/// Lossy compression and resampling leave small negative values.
+/// Lossy compression and resampling leave small negative values: they become 0, with a warning.
 TEST_F(TexturedLightFiles, NegativeValuesAreNoneAndAreNamed) {
   const scenes::Scene scene = read(exr(3, 1, {"R", "G", "B"}, {1, -0.5f, -1e-6f}), "t.exr");
   EXPECT_EQ(scene.lights[0].texture->texels, (std::vector<glm::vec3>{glm::vec3(1), glm::vec3(0), glm::vec3(0)}));
@@ -165,7 +165,7 @@ TEST_F(TexturedLightFiles, WrittenScenesReadBackToTheLastBit) {
   const scenes::Scene before = read(exr(2, 2, {"R", "G", "B"}, {0, 1e-30f, 0.1f, 1e30f}), "t.exr");
   std::filesystem::create_directory(folder_ / "moved");
   EXPECT_TRUE(scenes::write_scene(before, folder_ / "moved/copy.json").empty());
-  std::filesystem::remove(folder_ / "t.exr");  // the copy stands alone
+  std::filesystem::remove(folder_ / "t.exr");  // the copy must not depend on the original
   const scenes::Scene after = scenes::read_scene(folder_ / "moved/copy.json");
   EXPECT_EQ(after.lights[0].texture->file, "copy-light0.exr");
   EXPECT_EQ(after.lights[0].texture->texels, before.lights[0].texture->texels);
@@ -184,7 +184,8 @@ TEST_F(TexturedLightFiles, GlbKeepsTheMeanColourAndSaysSo) {
 }
 
 TEST_F(TexturedLightFiles, TheShippedWindowIsWhatItsSceneSays) {
-  // Bars every fifth texel; panes cool, white and warm from left to right; full, 3/4 and 1/2 bright from the top.
+  // Bars at every fifth texel; panes cool, white and warm from left to right, and full, 3/4 and 1/2 bright from top to
+  // bottom.
   const scenes::Scene scene = scenes::read_scene(std::filesystem::path(PENUMBRA_SCENES) / "textured-light.json");
   const scenes::Texture& texture = scene.lights[0].texture.value();
   ASSERT_EQ(texture.width, 16u);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Pictures made by hand, and scenes under textured lights.
+// Makes pictures byte by byte, and scenes under textured lights.
 
 #include "scenes/scene.hpp"
 #include "tests/unit/visibility/scenes.hpp"
@@ -43,8 +43,8 @@ inline std::string png_chunk(const std::string& kind, const std::string& data) {
   return big_endian(static_cast<std::uint32_t>(data.size())) + body + big_endian(static_cast<std::uint32_t>(sum));
 }
 
-/// `kind`: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha. `rows`: what the file's rows hold, each without
-/// its filter byte. `more`: chunks between header and picture.
+/// Returns a PNG file. `kind`: 0 grey, 2 RGB, 3 palette, 4 grey and alpha, 6 RGB and alpha. `rows`: the data of the
+/// file's rows, each without its filter byte. `more`: chunks between header and picture.
 inline std::string png_file(std::uint32_t width, std::uint32_t height, int depth, int kind,
                             const std::vector<std::string>& rows, const std::string& more = {}) {
   std::string plain;
@@ -65,7 +65,8 @@ inline std::string bytes_of(std::initializer_list<int> values) {
   return text;
 }
 
-/// A tilted board over a floor under a square light of half-size 1 at height 4, in floats that are what they say.
+/// A tilted board over a floor under a square light of half-size 1 at height 4, with coordinates that are exact in
+/// float.
 inline scenes::Scene board_under_light(std::optional<scenes::Texture> texture) {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));

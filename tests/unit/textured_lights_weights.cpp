@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests the weights of a textured light's samples: their sum is exactly 1, each is in proportion to the luminance of
-// the texel at the sample, and those of a constant texture give the same bytes as no texture.
+// the texel at the sample, and a constant texture gives the same bytes as no texture.
 
 #include "base/error.hpp"
 #include "tests/unit/scenes/support.hpp"
@@ -36,7 +36,7 @@ TEST(TexturedLightWeights, AddUpToOneInAnyOrder) {
   std::exponential_distribution<float> brightness(1.0f);
   for (const std::uint32_t count : {1u, 3u, 225u, 1000u, 4096u}) {
     const auto texture = texture_of(64, 64, [&](std::uint32_t x, std::uint32_t) {
-      return glm::vec3(brightness(random) * (x == 7 ? 1e6f : 1.0f));  // a sun among clouds
+      return glm::vec3(brightness(random) * (x == 7 ? 1e6f : 1.0f));  // as bright as a sun among clouds
     });
     Light light = light_with(texture, {count, 0, 0, SamplePattern::sobol, 5});
     std::vector<double> shuffled = light.weights;
@@ -101,13 +101,13 @@ TEST(TexturedLightWeights, AreLuminanceNotColour) {
 }
 
 TEST(TexturedLightWeights, SamplesThatSeeOnlyBlackTexelsAreRefused) {
-  // One bright texel of 64 in the corner; four samples are nowhere near it.
+  // One bright texel of 64, in the corner; none of the four samples lies on it.
   const auto texture =
       texture_of(8, 8, [](std::uint32_t x, std::uint32_t y) { return glm::vec3(x + y == 0 ? 1.0f : 0.0f); });
   test::expect_error(ExitCode::input, "all 4 light samples lie on black texels of its 8x8 texture; take more", [&] {
     (void)light_with(texture, {4, 0, 0, SamplePattern::grid, 0});
   });
-  EXPECT_EQ(light_with(texture, {64, 0, 0, SamplePattern::grid, 0}).weights[56], 1.0);  // the last row is the top
+  EXPECT_EQ(light_with(texture, {64, 0, 0, SamplePattern::grid, 0}).weights[56], 1.0);  // the last row is the topmost
 }
 
 TEST(TexturedLightWeights, WithoutATextureThereAreNone) {

@@ -13,7 +13,7 @@ TEST(Utf8, LengthsOfSequences) {
   EXPECT_EQ(utf8_length("\xC3\xA9"), 2u);
   EXPECT_EQ(utf8_length("\xE2\x82\xAC"), 3u);
   EXPECT_EQ(utf8_length("\xF0\x9F\x92\xA1"), 4u);
-  // alone, cut, overlong, a surrogate, beyond U+10FFFF
+  // Alone, cut off, overlong, a surrogate, beyond U+10FFFF.
   for (const char* bad : {"\x80", "\xC3", "\xC3(", "\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF0\x80\x80\x80",
                           "\xF4\x90\x80\x80", "\xF8\x88\x80\x80\x80"})
     EXPECT_EQ(utf8_length(bad), 0u) << bad;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests leaves of hierarchies that are made when they are first asked for.
+// Tests leaves of hierarchies that are made when first needed.
 
 #include "engines/vectors/wide_leaves.hpp"
 
@@ -48,7 +48,7 @@ TEST(WideLeaves, AreTheSameForAllThreadsThatAsk) {
     Leaves leaves;
     leaves.make(kMany, [&](std::size_t number, Leaf& leaf) { leaf.value += value_of(number); });
     std::vector<std::atomic<const Leaf*>> seen(kMany);
-    // All threads are in the same few blocks at any time.
+    // At any time all threads work in the same few blocks.
     for_each_index(4 * kMany, [&](std::size_t i) {
       const std::size_t number = i / 4;
       leaves.fetch((number + 40) % kMany);

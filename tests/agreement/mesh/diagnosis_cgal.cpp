@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The diagnosis against CGAL's own functions on CGAL's own meshes. Polygons of more than three corners are cut into the
-// same fans for both sides. Where CGAL's function means something else, the comparison says what and why.
+// Compares the diagnosis with CGAL's functions on CGAL's meshes. Polygons with more than three corners are cut into the
+// same fans for both. Where CGAL's function means something else, the comparison says what and why.
 
 #include "mesh/diagnosis/diagnosis.hpp"
 
@@ -84,7 +84,7 @@ typename K::Triangle_3 corners(const Soup& soup, const Polygon& t) {
   return {point(0), point(1), point(2)};
 }
 
-/// Collects what CGAL's orienter meets.
+/// Collects the reports of CGAL's orienter.
 struct Visitor : pmp::Default_orientation_visitor {
   std::set<std::pair<std::size_t, std::size_t>>* edges = nullptr;
   std::set<std::size_t>* vertices = nullptr;
@@ -96,8 +96,8 @@ struct Visitor : pmp::Default_orientation_visitor {
   }
 };
 
-/// Tests the definition: the two triangles share something, constructed exactly, that is no part of a vertex or edge of
-/// both.
+/// Tests the definition: the two triangles share a point, constructed exactly, that is not part of a common vertex or
+/// edge.
 bool meet_elsewhere(const Soup& soup, const Polygon& t, const Polygon& u) {
   std::vector<Exact::Point_3> shared;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -126,7 +126,8 @@ std::uint64_t count_self_intersections(const Soup& soup) {
   return count;
 }
 
-/// The sum of the solid angles over 4π at random points within the bounds: how far the worst is from an integer.
+/// Returns how far the winding number at random points within the bounds (the sum of solid angles over 4π) is from an
+/// integer at worst.
 double worst_winding(const Soup& soup, const Diagnosis& diagnosis) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -153,10 +154,10 @@ double worst_winding(const Soup& soup, const Diagnosis& diagnosis) {
   return worst;
 }
 
-/// Counts that CGAL adds, and why: CGAL cuts a soup at its non-manifold edges before it makes a mesh of the soup, so
-/// the ends of these edges are singular vertices to CGAL, and the cuts are borders. Our definition is about the soup
-/// without cuts: fans are linked through such edges, which have too many triangles rather than one, and no cut opens
-/// the fans.
+/// Counts that are larger for CGAL, and why: CGAL cuts a soup at its non-manifold edges before it makes a mesh of the
+/// soup, so the ends of these edges are singular vertices to CGAL, and the cuts are borders. Our definition is about
+/// the soup without cuts: fans are linked through such edges, which have too many triangles rather than one, and no cut
+/// opens the fans.
 struct Difference {
   std::uint64_t vertices = 0, border_edges = 0, cycles = 0;
   bool closed_to_us_alone = false;
@@ -176,7 +177,8 @@ void compare_duplicates(const Soup& soup, const Diagnosis& ours) {
                                                          CGAL::parameters::require_same_orientation(same_orientation));
   };
   EXPECT_EQ(ours.duplicate_faces.count, remove(true));
-  EXPECT_EQ(ours.opposite_faces.count, remove(false));  // one of each kind is left, so pairs are what CGAL removes
+  EXPECT_EQ(ours.opposite_faces.count,
+            remove(false));  // one triangle of each winding is left, so CGAL removes as many as there are pairs
 }
 
 void compare_mesh(const SurfaceMesh& mesh, const Diagnosis& ours, const Difference& difference) {
@@ -195,11 +197,13 @@ void compare_mesh(const SurfaceMesh& mesh, const Diagnosis& ours, const Differen
 
 void compare_self_intersections(const Soup& soup, const SurfaceMesh& mesh, bool as_it_stands, const Diagnosis& ours) {
   constexpr std::size_t kFew = 500;
-  // CGAL's function needs a mesh, and takes vertices that were split to get one for different places.
+  // CGAL's function needs a mesh. Vertices that were split to make one are different places to it.
   if (as_it_stands) {
     std::vector<std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>> pairs;
     pmp::self_intersections<CGAL::Parallel_if_available_tag>(mesh, std::back_inserter(pairs));
-    std::erase_if(pairs, [](const auto& pair) { return pair.first == pair.second; });  // one triangle, without area
+    std::erase_if(pairs, [](const auto& pair) {
+      return pair.first == pair.second;
+    });  // a pair of one triangle with itself: it has no area
     EXPECT_EQ(ours.self_intersections.value().count, pairs.size());
   }
   if (!as_it_stands || soup.triangles.size() < kFew) {
@@ -207,8 +211,8 @@ void compare_self_intersections(const Soup& soup, const SurfaceMesh& mesh, bool 
   }
 }
 
-/// Both sums of n determinants, each of them off by less than 2⁻⁴⁸ R³ where R is the farthest corner's distance from
-/// the point that they are about: CGAL's is the origin.
+/// Both volumes are sums of n determinants, each off by less than 2⁻⁴⁸ R³, where R is the distance of the farthest
+/// corner from the reference point: CGAL's is the origin.
 void compare_volume(const Soup& soup, const SurfaceMesh& mesh, const Diagnosis& ours) {
   const double radius = glm::length(glm::max(glm::abs(ours.lower), glm::abs(ours.upper)));
   const double bound = 0x1p-48 * static_cast<double>(soup.triangles.size()) * radius * radius * radius;
@@ -223,7 +227,8 @@ void compare(const std::filesystem::path& file) {
   const Diagnosis ours = diagnosis_of_read(soup);
   const Difference difference = known_difference(file.filename().string());
 
-  // Each angle is off by less than 2⁻⁵⁰; the nearest to closed of the open meshes, ChineseDragon-10kv.off, by 3.6e-8.
+  // Each angle is off by less than 2⁻⁵⁰. The open mesh with winding numbers nearest to integers,
+  // ChineseDragon-10kv.off, is off by 3.6e-8.
   EXPECT_EQ(ours.closed_as_wound, worst_winding(soup, ours) < 0x1p-50 * static_cast<double>(soup.triangles.size()));
   pmp::merge_duplicate_points_in_polygon_soup(soup.points, soup.triangles);
   const auto flat =

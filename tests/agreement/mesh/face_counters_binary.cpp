@@ -11,7 +11,7 @@
 namespace penumbra::test {
 namespace {
 
-/// Numbers from a file's bytes, one after the other; throws where they end.
+/// Reads numbers from a file's bytes one after another; throws at the end of the bytes.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes, bool big_endian = false) : bytes_(bytes), big_endian_(big_endian) {}
@@ -38,7 +38,7 @@ class Cursor {
   std::size_t at_ = 0;
 };
 
-/// Chunks of 3D Studio: number, length with these six bytes, content.
+/// Chunks of 3D Studio have a number, a length that includes these six bytes, and content.
 std::uint64_t count_3ds_chunks(std::string_view bytes) {
   std::uint64_t faces = 0;
   Cursor from(bytes);
@@ -47,7 +47,7 @@ std::uint64_t count_3ds_chunks(std::string_view bytes) {
     const auto length = from.take<std::uint32_t>();
     if (length < 6) break;
     std::string_view content = from.take(std::min<std::size_t>(length - 6, from.left()));
-    if (number == 0x4000) content.remove_prefix(content.find('\0') + 1);  // an object's name
+    if (number == 0x4000) content.remove_prefix(content.find('\0') + 1);  // skips an object's name
     if (number == 0x4D4D || number == 0x3D3D || number == 0x4000 || number == 0x4100)
       faces += count_3ds_chunks(content);
     if (number == 0x4120) faces += Cursor(content).take<std::uint16_t>();
@@ -187,14 +187,14 @@ FaceCount count_lwo(const std::filesystem::path& file) {
 FaceCount count_md2(const std::filesystem::path& file) {
   const std::string bytes = bytes_of_file(file);
   Cursor from(bytes);
-  from.take(32);  // eight numbers of other things
+  from.take(32);  // skips eight other numbers
   return from.take<std::uint32_t>();
 }
 
 FaceCount count_ms3d(const std::filesystem::path& file) {
   const std::string bytes = bytes_of_file(file);
   Cursor from(bytes);
-  from.take(14);  // a mark and a version
+  from.take(14);  // skips a magic number and a version
   from.take(std::size_t{15} * from.take<std::uint16_t>());
   return from.take<std::uint16_t>();
 }
@@ -220,7 +220,7 @@ FaceCount count_gltf(const std::filesystem::path& file) {
   if (document.contains("scenes") && !document["scenes"].empty()) {
     const nlohmann::json& scene = document["scenes"][document.value("scene", std::size_t{0})];
     if (scene.contains("nodes")) nodes = scene["nodes"].get<std::vector<std::size_t>>();
-  } else {  // all nodes that are nobody's children
+  } else {  // all nodes that are no other node's children
     std::set<std::size_t> children;
     for (const auto& node : document["nodes"]) {
       if (node.contains("children")) children.insert(node["children"].begin(), node["children"].end());

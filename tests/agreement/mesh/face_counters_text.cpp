@@ -19,7 +19,7 @@ std::uint64_t number(std::string_view word) {
   return std::stoull(std::string(word));
 }
 
-/// An XML element as far as counting needs it: names and attributes, the text apart.
+/// An XML element with what counting needs: names and attributes, and the text separately.
 struct Element {
   std::string_view name, attributes, text;
   std::vector<Element> children;
@@ -33,7 +33,7 @@ struct Element {
     const std::size_t first = at + key.size() + 1;
     return spaced.substr(first, spaced.find(quote, first) - first);
   }
-  /// Calls `visit` with every element below this one that has that name.
+  /// Calls `visit` for every element below this one that has the given name.
   template <typename Visit>
   void each(std::string_view wanted, Visit visit) const {
     for (const Element& child : children) {
@@ -74,7 +74,7 @@ Element parse_xml(std::string_view text) {
   return parse_xml(text, "", "");
 }
 
-/// The first entry of a zip archive whose name has this ending.
+/// Returns the first entry of a zip archive whose name has this ending.
 std::string entry_of_zip(const std::filesystem::path& file, std::string_view ending) {
   const unzFile archive = unzOpen64(file.c_str());
   if (archive == nullptr) throw std::runtime_error("no zip archive");
@@ -116,12 +116,13 @@ FaceCount count_off(const std::filesystem::path& file) {
     line = line.substr(0, line.find('#'));
     auto found = words_of(line);
     if (found.empty()) continue;
-    if (lines.empty() && found.size() > 1 && found[0].ends_with("OFF")) found.erase(found.begin());  // counts beside it
+    if (lines.empty() && found.size() > 1 && found[0].ends_with("OFF"))
+      found.erase(found.begin());  // the counts are in the same line
     lines.push_back(std::move(found));
   }
   const std::size_t header = lines.at(0).at(0).ends_with("OFF") ? 1 : 0;
   const std::uint64_t vertices = number(lines.at(header).at(0)), count = number(lines.at(header).at(1));
-  if (lines.size() != header + 1 + vertices + count) return std::nullopt;  // not one a line
+  if (lines.size() != header + 1 + vertices + count) return std::nullopt;  // there is not one face per line
   std::uint64_t faces = 0;
   for (std::uint64_t i = 0; i < count; ++i) faces += number(lines[header + 1 + vertices + i][0]) >= 3 ? 1 : 0;
   return faces;
@@ -168,7 +169,7 @@ FaceCount count_ase(const std::filesystem::path& file) {
   return faces;
 }
 
-/// DirectX, as text: of each Mesh the vertices, then the faces, each with its number of corners first.
+/// DirectX, as text: for each Mesh the vertices, then the faces, each beginning with its number of corners.
 FaceCount count_x(const std::filesystem::path& file) {
   std::string text = text_of_file(file);
   if (text.substr(8, 4) != "txt ") return std::nullopt;
@@ -235,7 +236,7 @@ FaceCount count_amf(const std::filesystem::path& file) {
     std::uint64_t& own = faces[object.attribute("id")];
     object.each("triangle", [&](const Element&) { ++own; });
   });
-  amf.each("constellation", [&](const Element& group) {  // of the objects and groups before it
+  amf.each("constellation", [&](const Element& group) {  // instances of earlier objects and groups
     std::uint64_t& own = faces[group.attribute("id")];
     group.each("instance", [&](const Element& instance) {
       own += faces.at(instance.attribute("objectid"));
@@ -247,7 +248,7 @@ FaceCount count_amf(const std::filesystem::path& file) {
   return sum;
 }
 
-/// Collada: what the visual scene shows, through nodes of the library and skins.
+/// Collada: counts the faces in the visual scene, through nodes of the library and skins.
 class Collada {
  public:
   explicit Collada(const Element& root) {
@@ -335,7 +336,7 @@ std::string text_of_file(const std::filesystem::path& file) {
   std::string bytes = bytes_of_file(file);
   if (bytes.starts_with("\xEF\xBB\xBF")) return bytes.substr(3);
   if (!bytes.starts_with("\xFF\xFE") && !bytes.starts_with("\xFE\xFF")) return bytes;
-  const iconv_t conversion = iconv_open("UTF-8", "UTF-16");  // takes the byte order mark away
+  const iconv_t conversion = iconv_open("UTF-8", "UTF-16");  // also removes the byte order mark
   std::string text(2 * bytes.size(), '\0');
   char *from = bytes.data(), *to = text.data();
   std::size_t left = bytes.size(), room = text.size();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that readers lose no surface: every file of Debian's assimp-testmodels and of libcgal-demo is held against
-// counts by code of this test's own. Files that the readers refuse are the corpus test's business; files that they
-// accept must be whole.
+// Tests that readers lose no surface: every file of Debian's assimp-testmodels and of libcgal-demo is compared with
+// counts by separate code of this test. Files that the readers refuse are left to the corpus test; files that they
+// accept must be complete.
 #include "mesh/import.hpp"
 
 #include "base/error.hpp"

@@ -66,7 +66,7 @@ TEST(ImportCorpus, EveryFileLoadsOrIsRefused) {
   }
   report("meshes", meshes);
   report("glTF scenes", scenes);
-  EXPECT_GT(meshes.loaded, 250);  // 315 of 595 files, of which many are pictures and texts, with Assimp 5.2.5
+  EXPECT_GT(meshes.loaded, 250);  // 315 of 595 files, many of which are pictures and texts, with Assimp 5.2.5
   EXPECT_EQ(meshes.loaded + meshes.refused, meshes.files);
 }
 

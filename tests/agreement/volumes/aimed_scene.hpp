@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Scenes made for one bound at a time: a small light somewhere in a scene of reach 1, an occluder aimed by the test
-// that uses this, and view samples close together around p on a floor that casts no shadow.
+// Scenes made for one bound at a time: a small light somewhere in a scene with coordinates up to 1, an occluder aimed
+// by the test that includes this header, and view samples close together around p on a floor that casts no shadow.
 
 #include "tests/agreement/support.hpp"
 
@@ -48,7 +48,7 @@ struct OneLightScene {
 
   void add_occluder(const std::vector<Corners>& triangles) { add_object(scene_, "occluder", triangles); }
 
-  /// 64 view samples within `spread` of p, on a floor across `up` that reaches as far as `size`.
+  /// Adds 64 view samples within `spread` of p, on a floor perpendicular to `up` that extends as far as `size`.
   void look_from(Draws& aim, const glm::dvec3& p, const glm::dvec3& up, double size, double spread) {
     const glm::dvec3 a = aim.across(up), b = glm::cross(up, a);
     add_object(scene_, "floor", {{p - size * a - size * b, p + size * a - size * b, p + size * b}}).casts_shadow =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// edge-scatter where a caster is a thousand times nearer to its shadow than the light is: neighbouring view samples in
-// a small part of a large scene. All bits and all areas against the exact ones; rectangles with the other methods that
-// promise every bit, too.
+// Tests edge-scatter with casters a thousand times nearer to their shadow than to the light: neighbouring view samples
+// in a small part of a large scene. All bits and all areas are compared with the exact ones; under rectangles also
+// those of the other methods that promise every bit.
 
 #include "tests/agreement/volumes/exact_rows.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -18,8 +18,8 @@ using visibility::ViewSamples;
 
 constexpr int kFew = 8, kFan = 256;
 
-/// Casters `near` to (0, 0, 0) on the floor, a camera that sees only the floor, and a triangle far away that makes the
-/// scene's largest coordinate `far`.
+/// Returns casters within `near` of (0, 0, 0) on the floor, a camera that sees only the floor, and a triangle far away
+/// that makes the scene's largest coordinate `far`.
 scenes::Scene contact(double near, double far, std::mt19937& random) {
   std::uniform_real_distribution<double> real(-1, 1);
   const auto point = [&] { return glm::dvec3(real(random), real(random), real(random)); };
@@ -28,10 +28,13 @@ scenes::Scene contact(double near, double far, std::mt19937& random) {
   std::vector<tests::Corners> casters;
   for (int i = 0; i < kFew; ++i) {
     const glm::dvec3 middle = near * (point() + glm::dvec3(0, 1.5, 0));
-    const double size = near * std::ldexp(1.0, -static_cast<int>(random() % 13));  // some within what a sun covers
+    const double size =
+        near *
+        std::ldexp(1.0, -static_cast<int>(random() % 13));  // some are smaller than the part that a sun covers there
     casters.push_back({middle + size * point(), middle + size * point(), middle + size * point()});
   }
-  // A fan whose rim has edges as fine as a dense mesh has: of a row of light samples each crosses one.
+  // A fan whose rim has edges as short as those of a dense mesh: each sample in a row of light samples crosses a
+  // different one.
   const glm::dvec3 middle = near * (point() + glm::dvec3(0, 1.5, 0)), apex = middle + near * point();
   const glm::dvec3 first = middle + near * point(), along = near / kFan * point();
   for (int i = 0; i < kFan; ++i) casters.push_back({apex, first + double(i) * along, first + (i + 1.0) * along});
@@ -45,8 +48,8 @@ scenes::Scene contact(double near, double far, std::mt19937& random) {
   return scene;
 }
 
-/// Moves the view samples of each block of pixels so that they see one place of one edge of a caster in front of places
-/// of the light.
+/// Moves the view samples of each block of pixels so that they all see one place of one caster's edge in front of the
+/// light.
 void look_past_edges(ViewSamples& samples, const SceneFloats& floats, const Light& light, std::mt19937& random) {
   std::uniform_real_distribution<double> share(0, 1);
   constexpr std::uint32_t kBlock = 8;
@@ -134,7 +137,7 @@ void Contacts::look(std::uint32_t seed, int rounds) {
 TEST_P(Contacts, AreTheExactBitsAndAreas) {
   look(11, std::get<0>(GetParam()) == 0 ? 2 : 5);
 }
-/// 4,000 clusters of each kind of light.
+/// Tests 4,000 clusters of view samples for each kind of light.
 TEST_P(Contacts, AreTheExactBitsAndAreasFull) {
   look(12, 500);
 }

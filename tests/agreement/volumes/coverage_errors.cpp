@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Predicts and measures the errors of soft shadow volumes: silhouettes are those of the light's centre, and sums stand
-// for unions. Tests what they get right, too, in scenes of several solids that shadow themselves.
+// Predicts and measures the errors of soft shadow volumes, which use the silhouettes of the light's centre, and sums in
+// place of unions. Also tests where they are right, in scenes of several solids that shadow themselves.
 
 #include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
@@ -21,8 +21,8 @@ using tests::CoverageStage;
 
 /// Errors |V − exact| over a grid of floor points that see part of the light.
 struct Errors {
-  double center_mean = 0, center_max = 0;  ///< by the centre's silhouettes
-  double receiver_max = 0;                 ///< by the receiver's own
+  double center_mean = 0, center_max = 0;  ///< with the centre's silhouettes
+  double receiver_max = 0;                 ///< with the receiver's own silhouettes
   int partly = 0;
 };
 
@@ -59,7 +59,7 @@ TEST(CoverageErrors, OfASphereGrowWithTheLightAndVanishWithTheReceiversSilhouett
     scene.lights.push_back(tests::ceiling_light(4, half));
     const Errors errors = errors_on_the_floor(CoverageStage(scene), 0.75 + 0.5 * half);
     record(fmt::format("sphere, light of half-size {}", half), errors);
-    EXPECT_LT(errors.receiver_max, 1e-9);  // convex: a single layer
+    EXPECT_LT(errors.receiver_max, 1e-9);  // a convex solid is a single layer
     EXPECT_GT(errors.partly, 200);
     EXPECT_GT(errors.center_max, last);
     last = errors.center_max;
@@ -77,8 +77,8 @@ TEST(CoverageErrors, OfACubeAreLarge) {
       record(fmt::format("cube {}, light of half-size {}", below ? "below" : "beside", half), errors);
       EXPECT_LT(errors.receiver_max, 1e-9);
       EXPECT_GT(errors.partly, 30);
-      // The centre's silhouette is the outline of the cube's top alone, as from every p, if the cube is right below the
-      // light and the light is no larger than the cube.
+      // The centre's silhouette is the outline of the cube's top alone, the same as from every p, if the cube is
+      // directly below the light and the light is no larger than the cube.
       const bool sees_top_alone = below && half <= 0.5;
       EXPECT_EQ(errors.center_max > 0.05, !sees_top_alone);
       EXPECT_LT(errors.center_max, sees_top_alone ? 1e-9 : 0.35);
@@ -87,8 +87,8 @@ TEST(CoverageErrors, OfACubeAreLarge) {
 }
 
 TEST(CoverageErrors, OfConvexSheetsInOnePlaneAreNone) {
-  // A quad and a hexagon that do not overlap, on a plane that misses the light: the centre's silhouettes give the right
-  // answer.
+  // A quad and a hexagon that do not overlap, in a plane that misses the light: the centre's silhouettes give the right
+  // result.
   std::mt19937 random(11);
   int partly = 0;
   for (int i = 0; i < 60; ++i) {
@@ -114,8 +114,8 @@ TEST(CoverageErrors, OfConvexSheetsInOnePlaneAreNone) {
   EXPECT_GT(partly, 300);
 }
 
-/// Returns the share hidden by the triangles that p and the light's centre see from the same side, each by itself: of
-/// closed parts once, of open ones twice (docs/coverage.md, Centre silhouettes).
+/// Returns the share hidden by the triangles of which p and the light's centre see the same side, summed over
+/// triangles: once for closed parts, twice for open ones (docs/coverage.md, Centre silhouettes).
 double predicted_error(const CoverageStage& stage, const glm::vec3& p, int times) {
   std::vector<std::array<glm::vec3, 3>> same_side;
   for (const std::uint32_t triangle : stage.casters.triangle) {
@@ -154,7 +154,7 @@ TEST(CoverageErrors, OfTheCentreAreWhatIsSeenFromOneSideByBoth) {
 }
 
 TEST(CoverageErrors, OfOverlappingOccludersAreWhatTheyHaveInCommon) {
-  // Boards at heights 1 and 2 under a light at 4: the sum takes A₁ + A₂, the union A₁ + A₂ − A₁₂. Tolerance: a few
+  // Boards at heights 1 and 2 under a light at 4: the sum removes A₁ + A₂, the union A₁ + A₂ − A₁₂. Tolerance: a few
   // ulps of 1.
   struct Board {
     double height, x0, x1, z0, z1;
@@ -174,7 +174,7 @@ TEST(CoverageErrors, OfOverlappingOccludersAreWhatTheyHaveInCommon) {
   double largest = 0;
   for (int i = -32; i <= 32; ++i) {
     const glm::vec3 p(static_cast<float>(i) / 32, 0, 0.0625F);
-    std::array<std::array<double, 4>, 3> boxes{};  // s0, s1, t0, t1 of each, and of both
+    std::array<std::array<double, 4>, 3> boxes{};  // s0, s1, t0, t1 of each board, and of their overlap
     for (std::size_t k = 0; k < 2; ++k) {
       const double scale = 4 / boards[k].height;
       const auto seen = [&](double x, double from) { return std::clamp(from + scale * (x - from), -1.0, 1.0); };
@@ -196,7 +196,7 @@ TEST(CoverageErrors, OfOverlappingOccludersAreWhatTheyHaveInCommon) {
   fmt::print("two boards: {:.4f} too dark at most\n", largest);
 }
 
-/// Solids that shadow each other and themselves, and an open sheet.
+/// Returns solids that shadow each other and themselves, and an open sheet.
 scenes::Scene still_life() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {3, 0, 0}, {0, 0, 3}));
@@ -209,7 +209,7 @@ scenes::Scene still_life() {
   return scene;
 }
 
-/// The judged pixels of a small picture.
+/// Returns the judged pixels of a small picture.
 std::vector<LitPoint> judged(const tests::Stage& stage) {
   const auto classes = visibility::classify_pixels(stage.floats, stage.samples, stage.light);
   std::vector<LitPoint> points;
@@ -262,8 +262,8 @@ TEST(CoverageErrors, SolidsThatShadowThemselvesAddUpToTheirLayers) {
 }
 
 TEST(CoverageErrors, WhatCrossesTheLightIsSetApart) {
-  // A board that crosses the light's plane: if it crosses within the light nothing is judged, if it crosses beside the
-  // light everything is.
+  // A board that crosses the light's plane: if it crosses inside the light, nothing is judged; if it crosses outside
+  // the light, everything is.
   for (const double at : {0.25, 1.5}) {
     scenes::Scene scene = still_life();
     tests::add_object(scene, "board", tests::quad({0.5 + at, 4, 0.5}, {0, 0.5, 0}, {0.125, 0, 0.25}));
@@ -277,7 +277,7 @@ TEST(CoverageErrors, WhatCrossesTheLightIsSetApart) {
 TEST(CoverageErrors, AWrongEdgeIsFound) {
   const tests::Stage stage(still_life(), 32, 24);
   const Casters casters = casters_of(stage.floats, stage.light);
-  // Each of the sheet's four open edges is turned around, one at a time.
+  // Reverses each of the sheet's four open edges, one at a time.
   for (std::uint32_t edge = 0; edge < casters.graph.edges.size(); ++edge) {
     const auto around = casters.graph.around(edge);
     if (around.size() != 1 || stage.floats.object[casters.triangle[around[0].triangle]] != 4) continue;
@@ -292,7 +292,7 @@ TEST(CoverageErrors, AMissingTriangleIsFound) {
   visibility::SceneFloats without = stage.floats;
   const auto sheet = std::ranges::find(without.object, 4U) - without.object.begin();
   without.casts_shadow[static_cast<std::size_t>(sheet)] = 0;
-  // Edges and triangles agree about what is left; only the union shows the error.
+  // Edges and triangles agree without the removed triangle; only the union shows the error.
   const Checked checked = check(stage, casters_of(without, stage.light));
   EXPECT_FALSE(checked.report.violations.empty());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums over silhouettes against areas that know no silhouette: of each triangle by itself, and of their exact union.
+// Compares sums over silhouettes with areas that use no silhouettes: of each triangle by itself, and of their exact
+// union.
 
 #include "mesh/shapes/shapes.hpp"
 #include "tests/unit/coverage_stage.hpp"
@@ -13,7 +14,7 @@ namespace {
 using tests::CoverageStage;
 using tests::Lamp;
 
-/// Soups between the floor and the light, which none of them touches.
+/// Returns soups between the floor and the light, which no triangle touches.
 scenes::Scene soup_below(std::mt19937& random, Lamp lamp, int count) {
   std::vector<tests::Corners> soup = tests::lattice_soup(random, count);
   for (tests::Corners& corners : soup) {
@@ -33,8 +34,8 @@ TEST(CoverageAgreement, TheReceiversSilhouettesAddUpToItsLayers) {
       const auto layers = stage.layers(p);
       const double expected = sum_of_layers(stage.soft.outline(), layers), exact = 1 - stage.exact(p);
       ASSERT_NEAR(sum.blocked, expected, 1e-9) << i << " " << j;
-      // The sum exceeds the union by nothing without an overlap, and never by more than the overlap. The union's disk
-      // is a polygon, off by 7.6e-8 at most.
+      // Without an overlap the sum equals the union; it never exceeds the union by more than the overlap. The union's
+      // disk is a polygon, off by 7.6e-8 at most.
       const double overlap = overlap_of_layers(stage.soft.outline(), layers, 100);
       const double tolerance = stage.light.kind == visibility::LightKind::disk ? 1e-7 : 1e-9;
       ASSERT_GE(expected - exact, -tolerance);

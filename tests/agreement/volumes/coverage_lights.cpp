@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums over silhouettes of textured lights and of spheres against the triangles one by one, and against `exact`.
+// Compares sums over silhouettes, for textured lights and spheres, with the triangles one by one and with `exact`.
 
 #include "tests/unit/coverage_stage.hpp"
 #include "tests/unit/exact_area_soups.hpp"
@@ -43,7 +43,7 @@ struct Found {
   double most = 0;
 };
 
-/// Checks as CoverageAgreement.TheReceiversSilhouettesAddUpToItsLayers does, each sum to within `tolerance`.
+/// Checks the sums as CoverageAgreement.TheReceiversSilhouettesAddUpToItsLayers does, each to within `tolerance`.
 void expect_layers(const CoverageStage& stage, std::mt19937& random, double tolerance, Found& found) {
   const TextureWeights* texture = stage.soft.texture();
   for (int j = 0; j < 20; ++j) {
@@ -69,8 +69,8 @@ TEST(CoverageLights, TexturedLayersAddUp) {
     scene.lights[0].texture = random_texture(random);
     const CoverageStage stage(scene);
     ASSERT_NE(stage.soft.texture(), nullptr);
-    // Each edge walks three times, each triangle's polygon has at most seven sides; a walk is off by 2⁻²⁴ · brightest
-    // where it is nearly upright (property/volumes/coverage_textures.cpp). At most 16 triangles, so 48 edges.
+    // Each edge takes three walks over texels, each triangle's polygon has at most seven sides; a walk is off by 2⁻²⁴ ·
+    // brightest if it is nearly upright (property/volumes/coverage_textures.cpp). At most 16 triangles, so 48 edges.
     const double walks = 48 * 3 + 16 * 7;
     expect_layers(stage, random, walks * 0x1p-24 * stage.soft.texture()->brightest() + 1e-9, found);
     if (HasFatalFailure()) FAIL() << "scene " << i;
@@ -86,7 +86,7 @@ TEST(CoverageLights, SpheresAreDisksThatFaceTheReceiver) {
   for (int i = 0; i < 60; ++i) {
     const CoverageStage stage(tests::soup_scene(soup_below(random, 2 + i % 7), Lamp::sphere));
     ASSERT_FALSE(stage.soft.something_touches_light());
-    // `exact` takes a polygon for the disk, off by 7.6e-8 at most.
+    // `exact` replaces the disk by a polygon, off by 7.6e-8 at most.
     expect_layers(stage, random, 1e-7, found);
     if (HasFatalFailure()) FAIL() << "scene " << i;
   }
@@ -95,8 +95,8 @@ TEST(CoverageLights, SpheresAreDisksThatFaceTheReceiver) {
   EXPECT_LT(found.most, 1e-9);
 }
 
-/// A vertex appears at a sphere's centre, so areas are seen from another point of the facing disk, which floats hold
-/// only nearly.
+/// A vertex appears exactly at a sphere's centre, so areas are computed from another reference point of the facing
+/// disk, which floats can only represent approximately.
 TEST(CoverageLights, ASpheresReferencePointMoves) {
   const tests::Corners triangle{glm::dvec3(0.25, 0.75, 0), {1.25, 0.75, 0.25}, {0.5, 1, 1.25}};
   const CoverageStage stage(tests::soup_scene({triangle}, Lamp::sphere));
@@ -108,7 +108,8 @@ TEST(CoverageLights, ASpheresReferencePointMoves) {
   EXPECT_NEAR(sum.blocked, 1 - stage.exact(p), 1e-7);
 }
 
-/// Boards beside each other, parallel to the floor: the centre sees what the receiver sees, and V is exact.
+/// Returns boards side by side, parallel to the floor: the centre sees the same silhouettes as the receiver, and V is
+/// exact.
 scenes::Scene boards_apart() {
   std::vector<tests::Corners> boards;
   for (int i = 0; i < 9; ++i) {
@@ -130,7 +131,7 @@ TEST(CoverageLights, PlanarCastersOfATexturedLightAndOfASphereAreExact) {
     if (sphere) scene.lights[0].shape = scenes::Sphere{{0.125, 4, 0}, 0.5};
     if (!sphere) scene.lights[0].texture = random_texture(random);
     const CoverageStage stage(scene);
-    // Nine boards of five edges, three walks each; a sphere: the disk's polygon.
+    // Nine boards with five edges, three walks each; for a sphere, the error of the disk's polygon.
     const double tolerance = sphere ? 1e-7 : 9 * 5 * 3 * 0x1p-24 * stage.soft.texture()->brightest();
     double most = 0;
     int penumbra = 0;
@@ -159,7 +160,7 @@ TEST(CoverageLights, ASphereIsTouchedByWhatReachesTheBall) {
   EXPECT_TRUE(touched({c, c + glm::dvec3(0.25, 0, 0), c + glm::dvec3(0, 0.25, 0)})) << "within it";
 }
 
-/// A wrong sum is found: the silhouettes of a scene that lacks one board are held against all triangles.
+/// A wrong sum is noticed: the silhouettes of a scene that lacks one board are compared with all triangles.
 TEST(CoverageLights, TheInvariantIsCheckedOfThem) {
   std::mt19937 random(24);
   for (const bool sphere : {false, true}) {

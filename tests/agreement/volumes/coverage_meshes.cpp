@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums of the receiver's silhouettes over meshes with every defect, and over real ones: against triangles one by one,
-// and the exact union.
+// Compares sums of the receiver's silhouettes, over meshes with every defect and over real ones, with triangles one by
+// one and with the exact union.
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
@@ -22,7 +22,7 @@ namespace {
 
 const std::filesystem::path kMeshes = std::filesystem::path(PENUMBRA_CGAL_CORPUS) / "meshes";
 
-/// The mesh, at most 1 from the origin, over a floor under one light of each kind that has a plane.
+/// Returns the mesh, scaled to at most 1 from the origin, over a floor under one light of each kind that has a plane.
 scenes::Scene scene_of(const mesh::TriangleSoup& soup, int lamp) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, -1.125, 0}, {4, 0, 0}, {0, 0, 4}));
@@ -52,7 +52,7 @@ bool is_judged(const visibility::SceneFloats& floats, const visibility::Light& l
   });
 }
 
-/// Points on triangles, of the floor and of the mesh itself, on the side where the whole light is.
+/// Returns points on triangles of the floor and of the mesh, on the side from which the whole light is visible.
 std::vector<LitPoint> points_on(const visibility::SceneFloats& floats, const visibility::Light& light, int count,
                                 std::uint32_t seed) {
   std::mt19937 random(seed);
@@ -65,7 +65,7 @@ std::vector<LitPoint> points_on(const visibility::SceneFloats& floats, const vis
     if (floats.plane[point.carrier] == visibility::SceneFloats::kNoPlane) continue;
     const auto [a, b, c] = floats.corners(point.carrier);
     const float s = static_cast<float>(share(random)) / 16, t = (1 - s) * static_cast<float>(share(random)) / 16;
-    const float near = tries % 2 == 0 ? 0.375F : 1;  // of the floor, what is below the mesh
+    const float near = tries % 2 == 0 ? 0.375F : 1;  // on the floor, only the part below the mesh
     point.p = near * (a + s * (b - a) + t * (c - a));
     if (tries % 2 == 0) point.p.y = a.y;
     for (const int facing : {1, -1}) {
@@ -147,7 +147,7 @@ TEST(CoverageMeshes, ClosedOnesOfTheCorpusFull) {
     try {
       imported = mesh::import_mesh(file);
     } catch (const std::exception& error) {
-      continue;  // the importer's tests judge that
+      continue;  // the importer's tests check such files
     }
     const mesh::MeshView view{imported.soup.positions, imported.soup.triangles};
     if (!mesh::diagnose(view, {.search_intersections = false}).closed) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges that the light's plane cuts and that go on past p, nearly through it: the end at the light is stored as floats,
-// and what that moves it by turns the part of the edge beside p much farther. (docs/edge-scatter.md, bound cut)
+// Edges that the light's plane cuts and that continue past p, almost through it: their end at the light is stored as
+// floats, and its rounding error moves the part of the edge next to p much farther. (docs/edge-scatter.md, bound cut)
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/volumes/aimed_scene.hpp"

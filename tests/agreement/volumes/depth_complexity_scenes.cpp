@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, DepthScenes,
 
 class DepthScenesFull : public DepthScenesBase {};
 TEST_P(DepthScenesFull, EveryBitIsThatOfTheOthers) {
-  check(48, {});  // where two pixels of large-penumbra are hard
+  check(48, {});  // at this size two pixels of large-penumbra are hard
   check(256, {});
   check(96, {1000, 0, 0, visibility::SamplePattern::sobol, 1});
   check(96, {256, 0, 0, visibility::SamplePattern::grid, 0});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cropping (Lehtinen et al. 2006): edges that are no silhouettes as seen from a group of view samples are left out of
-// its list. It removes nothing that matters, and how much it removes is counted.
+// Cropping (Lehtinen et al. 2006) leaves edges that are no silhouettes, as seen from a group of view samples, out of
+// the group's list. Tests that it removes nothing that matters, and counts how much it removes.
 
 #include "tests/agreement/differences.hpp"
 #include "tests/unit/shipped_scene.hpp"
@@ -27,13 +27,13 @@ struct CropStage {
   visibility::ViewSamples samples;
 };
 
-/// The slots in the list of a cluster of view samples, ascending, and the judged pixels that are in it.
+/// The slots in the list of a cluster of view samples, in ascending order, and the cluster's judged pixels.
 struct ClusterList {
   std::vector<std::uint32_t> slots, pixels;
 };
 
-/// The lists, by number of cluster. Nothing in the scene may be behind the light or be its body, so that slots are
-/// those of `records`.
+/// Returns the lists, by number of cluster. No part of the scene may be behind the light or be its body, so that slots
+/// are those of `records`.
 std::vector<ClusterList> lists_of(const render::Device& device, const CropStage& stage, bool crops) {
   constexpr std::uint32_t kBlock = 8, kClusters = 4, kNone = 0xffffffffU, kHead = 2;  // as in edge_scatter.glsl
   const float scale = visibility::device_scale(stage.floats);
@@ -76,7 +76,7 @@ std::vector<ClusterList> lists_of(const render::Device& device, const CropStage&
   return lists;
 }
 
-/// k_e(p) of a record, in float: good enough to be counted, not to decide anything.
+/// Returns k_e(p) of a record, in float: accurate enough for counting, not for decisions.
 int multiplicity(const EdgeTexels& texels, std::uint32_t slot, const glm::vec3& p) {
   int sum = 0;
   for (const std::size_t side : {2U, 4U}) {
@@ -113,7 +113,7 @@ class EdgeCropBase : public tests::DeviceTest, public testing::WithParamInterfac
         GetParam(), size, size, pixels, reached / pixels, kept / pixels, silhouettes / pixels);
   }
 
-  /// Cropping changes neither masks nor V.
+  /// Expects that cropping changes neither masks nor V.
   void compare(std::uint32_t size, const std::vector<const char*>& variants) {
     const CropStage stage(device(), GetParam(), size);
     for (const char* variant : variants) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture on every vector unit that this processor has: the same bits, so that a test on one of them is about all.
+// Compares one picture on every vector unit that this processor has: the bits are the same, so that a test on one unit
+// holds for all.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
@@ -15,7 +16,7 @@
 namespace penumbra {
 namespace {
 
-/// Runs on one of the processor's vector units.
+/// Restricts the program to one of the processor's vector units.
 class OnlyTarget {
  public:
   explicit OnlyTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
@@ -30,7 +31,7 @@ scenes::Scene scene_under(const std::string& kind) {
   scenes::Scene scene = tests::shipped_scene("large-penumbra");
   const auto center = std::get<scenes::Rectangle>(scene.lights.front().shape).center;
   if (kind == "disk") scene.lights.front().shape = scenes::Disk{center, {0, -1, 0}, 3};
-  if (kind == "sphere") scene.lights.front().shape = scenes::Sphere{center, 3};  // it holds casters
+  if (kind == "sphere") scene.lights.front().shape = scenes::Sphere{center, 3};  // the sphere contains casters
   return scene;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// edge-scatter with rows=exact against the exact areas: no light samples on either side.
+// Compares edge-scatter with rows=exact with the exact areas; neither uses light samples.
 
 #include "tests/agreement/volumes/exact_rows.hpp"
 #include "tests/agreement/hostile_lamps.hpp"
@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOnScenes,
                            return name;
                          });
 
-/// Everything coincides with something: lights that triangles pass through, doubles, p in other triangles' planes.
+/// Everything coincides with something: triangles through lights, doubled triangles, p in other triangles' planes.
 TEST_F(ExactRows, LatticeSoups) {
   Found found;
   for (const int range : {1, 2, 4}) {
@@ -70,8 +70,8 @@ TEST_F(ExactRows, LatticeSoups) {
   EXPECT_GT(found.partly, found.pixels / 20);
 }
 
-/// An edge through the origin, and view samples so near to it that it passes through them even in double: only exact
-/// predicates decide on which side it passes, and whether in front of the light.
+/// An edge through the origin, and view samples so near to it that even in double the edge passes through them: only
+/// exact predicates decide on which side it passes, and whether it is in front of the light.
 TEST_F(ExactRows, EdgesThroughP) {
   Found found;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -80,7 +80,7 @@ TEST_F(ExactRows, EdgesThroughP) {
     const auto vector = [&] { return glm::dvec3(glm::vec3(real(random), real(random), real(random))); };
     const auto scale = [&](std::uint32_t most) { return std::ldexp(1.0, -static_cast<int>(random() % most)); };
     scenes::Scene scene;
-    // Keeps the origin of scene floats at zero, whatever is added.
+    // Keeps the origin of scene floats at zero, whatever else is added.
     scenes::Object& anchor =
         tests::add_object(scene, "anchor", {{glm::dvec3(-16), glm::dvec3(16, 16, -16), glm::dvec3(16)}});
     anchor.casts_shadow = anchor.receives_shadow = false;
@@ -152,7 +152,7 @@ class LooksAtHostileLamps : public ExactRows {
                name_of(hostility), count, refused, found.pixels, found.partly, found.unproven, found.largest);
     EXPECT_EQ(found.wrong, 0U);
     EXPECT_GT(found.partly, found.pixels / 50);
-    EXPECT_LT(found.unproven, found.pixels / 2);  // a third lies in the light's own plane where there are panels
+    EXPECT_LT(found.unproven, found.pixels / 2);  // with panels, a third lies in the light's own plane
   }
 };
 class HostileLamps : public LooksAtHostileLamps, public testing::WithParamInterface<tests::Hostility> {};
@@ -162,7 +162,7 @@ TEST_P(HostileLamps, AreTheExactAreas) {
 INSTANTIATE_TEST_SUITE_P(Kinds, HostileLamps, testing::ValuesIn(tests::kHostilities),
                          [](const auto& it) { return tests::name_of(it.param); });
 
-/// A hundred thousand of each kind, in ten parts, so that a run that was stopped can go on.
+/// A hundred thousand lamps of each kind, in ten parts, so that a stopped run can be continued.
 class ManyHostileLamps : public LooksAtHostileLamps,
                          public testing::WithParamInterface<std::tuple<tests::Hostility, std::uint32_t>> {};
 TEST_P(ManyHostileLamps, AreTheExactAreasFull) {
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ManyHostileLamps,
                            return fmt::format("{}{}", tests::name_of(std::get<0>(it.param)), std::get<1>(it.param));
                          });
 
-/// V times the unshadowed integral is wrong for a light that stands on the floor; form factors are right.
+/// For a light that stands on the floor, V times the unshadowed integral is wrong, but form factors are right.
 TEST_F(ExactRows, FormFactorsBesideALight) {
   const SoftStage stage(tests::things_before_a_panel(), device(), 96, 72);
   Found found;
@@ -186,7 +186,7 @@ TEST_F(ExactRows, FormFactorsBesideALight) {
   EXPECT_LT(found.largest_form_factor, 1e-8);
 }
 
-/// Parallelograms, and lights that emit to both sides.
+/// Parallelograms, and two-sided lights.
 TEST_F(ExactRows, OtherRectangles) {
   Found found;
   for (const double skew : {0.0, 0.3, -0.9}) {
@@ -194,7 +194,7 @@ TEST_F(ExactRows, OtherRectangles) {
     auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
     light.half_v += skew * light.half_u;
     scene.lights[0].two_sided = true;
-    if (skew == 0) std::swap(light.half_u, light.half_v);  // emits upward, and, two-sided, down
+    if (skew == 0) std::swap(light.half_u, light.half_v);  // emits upward and, being two-sided, downward
     const SoftStage stage(scene, device(), 48, 48);
     compare(stage.floats, stage.light, stage.samples, kTolerance, found);
   }
@@ -202,8 +202,8 @@ TEST_F(ExactRows, OtherRectangles) {
   EXPECT_GT(found.partly, 300U);
 }
 
-/// A panel that reaches into a sphere: every view sample needs the exact area, also while its data are being made on
-/// all cores. There are more threads than cores, and threads that wait take other work.
+/// A panel that reaches into a sphere: every view sample needs the exact area, also while the area's data are being
+/// made on all cores. There are more threads than cores, and threads that wait take other work.
 TEST_F(ExactRows, ManyThreadsAskForExactAreasAtOnce) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
@@ -250,7 +250,7 @@ TEST_F(ExactRows, OrderOfTriangles) {
   permuted(turned.receives_shadow);
   permuted(turned.emits);
   for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
-  // A plane's number is that of its first triangle.
+  // A plane's number is the number of its first triangle.
   for (std::uint32_t& plane : turned.plane) {
     if (plane != SceneFloats::kNoPlane) plane = place[plane];
   }
@@ -264,7 +264,8 @@ TEST_F(ExactRows, OrderOfTriangles) {
   double largest = 0;
   for (std::size_t i = 0; i < one.size(); ++i)
     largest = std::max(largest, std::abs(static_cast<double>(one[i]) - static_cast<double>(other[i])));
-  // Clusters are the same, so every edge is in the same place; sums of some hundred doubles, rounded to float once.
+  // Clusters are the same, so every edge is at the same place. The difference is in sums of some hundred doubles,
+  // rounded to float once.
   EXPECT_LE(largest, 0x1p-24);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// edge-scatter with rows=exact held against the exact areas, view sample by view sample.
+// Compares edge-scatter with rows=exact with the exact areas, view sample by view sample.
 
 #include "reference/methods.hpp"
 #include "tests/agreement/support.hpp"
@@ -18,12 +18,12 @@
 
 namespace penumbra::tests {
 
-/// Both round V to float once, by at most 2⁻²⁵ for numbers up to 1. Before that rows=exact is right to 2⁻²⁶
-/// (volumes::kProven), and the exact areas to 10⁻¹², of
-/// disks 10⁻¹⁰: 64 · 2⁻⁵³ for each of a few thousand trapezoids at the rim.
+/// Both round V to float once, by at most 2⁻²⁵ for numbers up to 1. Before that, rows=exact is right to 2⁻²⁶
+/// (volumes::kProven), and the exact areas to 10⁻¹², or to 10⁻¹⁰ for disks: 64 · 2⁻⁵³ for each of a few thousand
+/// trapezoids at the rim.
 constexpr double kExactRowsTolerance = 2 * 0x1p-25 + 0x1p-26 + 1e-10;
 
-/// Results of a method of output radiance.
+/// Results of a method whose output is radiance.
 struct RowsAnswer {
   std::vector<float> shares;
   std::vector<glm::dvec3> form_factors;
@@ -63,8 +63,8 @@ class ExactRows : public DeviceTest {
     std::size_t pixels = 0, partly = 0, unproven = 0, wrong = 0, wrong_form_factors = 0;
     double largest = 0, largest_form_factor = 0;
   };
-  /// The form factor of as much of the light as V may be off by, seen from no nearer than the light is, and the
-  /// rounding of some hundred doubles.
+  /// Returns the form factor of the part of the light by which V may be wrong, at the light's smallest distance, plus
+  /// the rounding of some hundred doubles.
   static double form_factor_tolerance(const visibility::Light& light, const glm::vec3& p) {
     if (!visibility::is_planar(light.kind)) {
       const visibility::LightFrame seen = visibility::light_frame_from(light, p);
@@ -85,7 +85,7 @@ class ExactRows : public DeviceTest {
     return brightest * (kExactRowsTolerance * light.area / (std::numbers::pi * glm::dot(nearest, nearest)) + 1e-13);
   }
   static double mean_luminance(const visibility::Light& light) { return std::min(1.0, light.texture->mean_luminance); }
-  /// Adds to `found` what differs from the exact areas.
+  /// Compares with the exact areas, and adds the differences to `found`.
   static void compare(const visibility::SceneFloats& floats, const visibility::Light& light,
                       const visibility::ViewSamples& samples, double tolerance, Found& found) {
     const auto rows = make();
@@ -98,7 +98,7 @@ class ExactRows : public DeviceTest {
     std::size_t wrong = 0;
     const std::vector<visibility::PixelClass> classes = visibility::classify_pixels(floats, samples, light);
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      if (classes[i] <= visibility::PixelClass::unshadowed) continue;  // not asked
+      if (classes[i] <= visibility::PixelClass::unshadowed) continue;  // not evaluated
       const double error = std::abs(static_cast<double>(shares[i]) - static_cast<double>(truth[i]));
       ++found.pixels;
       found.partly += truth[i] > 0 && truth[i] < 1 ? 1 : 0;

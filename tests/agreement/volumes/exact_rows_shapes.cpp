@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// edge-scatter with rows=exact against the exact areas, for lights of every shape: disks, ellipses, polygons, textures,
-// spheres, suns.
+// Compares edge-scatter with rows=exact with the exact areas for lights of every shape: disks, ellipses, polygons,
+// textures, spheres, suns.
 
 #include "base/error.hpp"
 #include "tests/agreement/volumes/exact_rows.hpp"
@@ -40,8 +40,8 @@ std::uint32_t below(std::mt19937& random, std::uint32_t end) {
   return static_cast<std::uint32_t>(random() % end);
 }
 
-/// Makes a polygon in the ellipse of the rectangle's axes: its frame, the first three corners, is at any angle. `many`:
-/// corners so close together that the frame is a needle.
+/// Makes a polygon in the ellipse with the rectangle's axes: its frame, the first three corners, is at any angle. With
+/// `many`, corners are so close together that the frame is a needle.
 scenes::Polygon polygon_in(const scenes::Rectangle& r, bool many, std::mt19937& random) {
   const std::uint32_t count = many ? 40 + below(random, 60) : 3 + below(random, 5);
   std::vector<double> angles;
@@ -55,7 +55,7 @@ scenes::Polygon polygon_in(const scenes::Rectangle& r, bool many, std::mt19937& 
   return polygon;
 }
 
-/// The scene's first light, a rectangle, in another shape: in its plane and about as large. (A sun: shining in its
+/// Turns the scene's first light, a rectangle, into another shape in its plane, about as large. (A sun shines in its
 /// direction.)
 void reshape(scenes::Scene& scene, Shape shape, std::mt19937& random) {
   scenes::AreaLight& light = scene.lights[0];
@@ -88,7 +88,7 @@ void reshape(scenes::Scene& scene, Shape shape, std::mt19937& random) {
         const float red = share(), green = share(), blue = share();
         texture.texels.emplace_back(red, green, blue);
       }
-      texture.texels.back() = {1, 1, 1};  // not all are black
+      texture.texels.back() = {1, 1, 1};  // ensures that not all are black
       light.texture = texture;
       break;
     }
@@ -109,9 +109,10 @@ TEST_P(ExactRowsOfShapes, AreTheExactAreas) {
   fmt::print("{} {}: {} pixels, {} partly lit, {} unproven, off by {:.1e} at most, form factors by {:.1e}\n", name,
              name_of(shape), found.pixels, found.partly, found.unproven, found.largest, found.largest_form_factor);
   EXPECT_EQ(found.wrong, 0U);
-  EXPECT_TRUE(found.partly > 15U || shape == Shape::thin_sun) << found.partly;  // a thousandth of a degree
-  // 2⁻⁵³ of the scene's reach, some hundred times, is more than 2⁻²⁶ of what so thin a sun covers: where edges cross
-  // it, integers answer.
+  EXPECT_TRUE(found.partly > 15U || shape == Shape::thin_sun)
+      << found.partly;  // a thousandth of a degree is too thin for that
+  // Some hundred times 2⁻⁵³ of the scene's extent is more than 2⁻²⁶ of the area that so thin a sun covers: where edges
+  // cross that area, integer arithmetic is used.
   EXPECT_LE(found.unproven, found.pixels / 200 + (shape == Shape::thin_sun ? 2 * found.partly : 0));
   EXPECT_EQ(found.wrong_form_factors, 0U);
 }
@@ -122,7 +123,8 @@ INSTANTIATE_TEST_SUITE_P(Shipped, ExactRowsOfShapes,
                            return std::string(std::get<0>(it.param)) + name_of(std::get<1>(it.param));
                          });
 
-/// Form factors found together with V, or afterwards, are the same, and V is, too. The rectangle, then all others.
+/// Form factors found together with V or afterwards are the same, and so is V. Tests the rectangle, then all other
+/// shapes.
 TEST_F(ExactRows, FormFactorsAreTheSameOnTheWay) {
   const auto same = [](const auto& a, const auto& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
@@ -192,7 +194,7 @@ class LooksAtHostileShapes : public ExactRows {
       const ViewSamples samples = tests::hostile_samples(floats, lamp.random(), 6, 8);
       try {
         compare(floats, *light, samples, tests::kExactRowsTolerance, found);
-      } catch (const InputError& error) {  // of the window that it has around such a light
+      } catch (const InputError& error) {  // because of the window around such a light
         if (!tests::refuses_size(error)) throw;
         ++refused;
       }
@@ -220,14 +222,15 @@ INSTANTIATE_TEST_SUITE_P(Kinds, HostileShapes,
                            return tests::name_of(std::get<0>(it.param)) + name_of(std::get<1>(it.param));
                          });
 
-/// h / (H − h) in the thousands: edges were lost where X − foot was taken from feet that are rounded over the light.
+/// With h / (H − h) in the thousands, edges were lost when X − foot was computed from feet rounded over the whole
+/// light.
 class PanelsUnderThinSuns : public LooksAtHostileShapes, public testing::WithParamInterface<std::uint32_t> {};
 TEST_P(PanelsUnderThinSuns, KeepTheirEdges) {
   look(tests::Hostility::panels, Shape::thin_sun, GetParam() - 30, 60);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, PanelsUnderThinSuns, testing::Values(4951u, 19207u, 42460u));
 
-/// A hundred thousand of each, in ten parts, so that a run that was stopped can go on.
+/// A hundred thousand lamps of each kind and shape, in ten parts, so that a stopped run can be continued.
 class ManyHostileShapes : public LooksAtHostileShapes,
                           public testing::WithParamInterface<std::tuple<tests::Hostility, Shape, std::uint32_t>> {};
 TEST_P(ManyHostileShapes, AreTheExactAreasFull) {
@@ -242,7 +245,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ManyHostileShapes,
                                               name_of(std::get<1>(it.param)), std::get<2>(it.param));
                          });
 
-/// The window is around the outline, whatever the frame, and its places are where the axes lead.
+/// The window contains the outline, whatever the frame, and its places agree with its axes.
 TEST(LightWindow, HoldsThePolygon) {
   std::mt19937 random(3);
   for (int round = 0; round < 200; ++round) {

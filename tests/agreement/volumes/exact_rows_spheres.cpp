@@ -22,7 +22,8 @@ using visibility::ViewSamples;
 
 class SpheresThatHold : public ExactRows {
  protected:
-  /// A floor, a sphere over it, and casters. The anchor keeps the origin of scene floats at zero, whatever they are.
+  /// Compares a floor with a sphere over it and casters. The anchor keeps the origin of scene floats at zero, whatever
+  /// these are.
   static void look(const glm::dvec3& at, double radius, const std::vector<tests::Corners>& casters,
                    std::mt19937& random, Found& found) {
     scenes::Scene scene;
@@ -72,7 +73,7 @@ TEST_F(SpheresThatHold, Triangles) {
     for (int i = 0; i < 20; ++i) {
       const glm::dvec3 middle = at + glm::dvec3(0, 2.4, 0) + 0.5 * vector();
       const double size = std::exp2(2 * real(random));
-      // Every third one is nearly in the plane of a disk that is seen from below.
+      // Every third triangle is nearly in the plane of a disk seen from below.
       const double flat = i % 3 == 0 ? 0.02 : 1;
       const auto corner = [&] { return middle + size * glm::dvec3(1, flat, 1) * vector(); };
       const glm::dvec3 a = corner(), b = corner(), c = corner();
@@ -84,7 +85,7 @@ TEST_F(SpheresThatHold, Triangles) {
   EXPECT_LE(found.unproven, found.pixels / 20);
 }
 
-/// Lampshades as they are modelled: two cones of rings around the sphere, the lower of which passes through it.
+/// Lampshades as modellers make them: two cones of rings around the sphere, the lower of which passes through it.
 TEST_F(SpheresThatHold, LampShades) {
   Found found;
   for (std::uint32_t seed = 0; seed < 10; ++seed) {
@@ -174,7 +175,7 @@ TEST_F(SpheresThatHold, Halves) {
   expect_right("halves", found);
 }
 
-/// A view sample gets the same bits alone as among others, whichever edges the lists of its neighbours hold.
+/// A view sample gets the same bits alone and among others, whichever edges the lists of its neighbours have.
 TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   std::size_t partly = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {
@@ -202,7 +203,7 @@ TEST_F(SpheresThatHold, NeighboursDoNotMatter) {
   EXPECT_GT(partly, 200U);
 }
 
-/// An edge's end at the disk and its caster's cut were an ulp apart, on either side of the window's left side: V was
+/// An edge's end at the disk and its caster's cut were an ulp apart, on opposite sides of the window's left side: V was
 /// 0.44 in place of 0.96.
 TEST_F(SpheresThatHold, AnOutlineAtTheLeftSide) {
   scenes::Scene scene;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what methods keep from one frame's mesh to the next. Vertices of lattice soups move, alone or with all that lie
-// at their place, so that edges, planes and triangles without area come and go; each answer has the bits of a method
-// that never saw another frame.
+// Tests the data that methods keep from one frame's mesh to the next. Vertices of lattice soups move, alone or with all
+// vertices at the same place, so that edges, planes and triangles without area come and go; each answer has the same
+// bits as that of a method that has seen no other frame.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 using visibility::SceneFloats;
 
-/// Moves some vertices of a scene as frames do.
+/// Moves some vertices of a scene, as an animation does between frames.
 void deform(scenes::Scene& scene, const scenes::Scene& at_rest, tests::LatticeSoup& soup) {
   std::vector<glm::dvec3>& positions = scene.soup.positions;
   const auto any = [&] { return soup.below(static_cast<std::uint32_t>(positions.size())); };
@@ -34,19 +34,19 @@ void deform(scenes::Scene& scene, const scenes::Scene& at_rest, tests::LatticeSo
     case 0:  // one corner, away from what it touched
       positions[any()] = soup.point();
       break;
-    case 1:  // all at one place, perhaps to where others are
+    case 1:  // all vertices at one place, perhaps to the place of others
       move_all_at(positions[any()], soup.point());
       break;
-    case 2:  // by less than the lattice: planes part, edges do not
+    case 2:  // by less than the lattice's step: planes separate, edges do not
       move_all_at(positions[any()], positions[any()] + 0.25 * glm::dvec3(soup.point()));
       break;
-    case 3:  // one object to a point, as one of scale 0
+    case 3:  // one object shrinks to a point, as if its scale were 0
       for (std::size_t i = 0; i < scene.soup.triangles.size(); ++i) {
         if (scene.soup.object[i] != 0) continue;
         for (const std::uint32_t vertex : scene.soup.triangles[i]) positions[vertex] = glm::dvec3(1, 0, 1);
       }
       break;
-    case 4:  // all of it by something that rounds
+    case 4:  // everything moves, with rounding
       for (glm::dvec3& position : positions) position = 1.1 * position + glm::dvec3(0.3, 0.1, 0.2);
       break;
     default:
@@ -54,7 +54,7 @@ void deform(scenes::Scene& scene, const scenes::Scene& at_rest, tests::LatticeSo
   }
 }
 
-using Edge = std::array<float, 20>;  // ends, and normal, anchor, plane of each side
+using Edge = std::array<float, 20>;  // the ends, and normal, anchor and plane of each side
 std::vector<Edge> edges_of(const vectors::WideEdgeTree& tree) {
   std::vector<Edge> found;
   for (std::size_t i = 0; i < tree.leaves.size(); ++i) {
@@ -75,7 +75,7 @@ std::vector<Edge> edges_of(const vectors::WideEdgeTree& tree) {
   return found;
 }
 
-/// Every edge is in the boxes of all nodes above it: a tree of another scene would lose some.
+/// Expects that every edge is in the boxes of all nodes above it: a tree of another scene would miss some.
 void expect_in_boxes(const vectors::WideEdgeTree& tree) {
   const std::function<void(std::uint32_t, const std::vector<std::array<glm::vec3, 2>>&)> go =
       [&](std::uint32_t reference, const std::vector<std::array<glm::vec3, 2>>& boxes) {
@@ -143,18 +143,18 @@ TEST(KeptEdges, AreThoseOfTheFrameByItself) {
   EXPECT_GT(made[SceneEdges::Made::built], 600U) << "connectivity changes";
 }
 
-/// A sheet all of which moves, and the part of it from `from` on bends.
+/// Moves a whole sheet, and bends the part of it from `from` on.
 void bend(scenes::Scene& scene, double from) {
   for (glm::dvec3& p : scene.soup.positions) p += glm::dvec3(0, p.x > from ? p.x * p.x + p.z * p.x : 0, 0.25);
 }
 
-/// Flat edges that bend are taken into the hierarchy, which is built again for them; where most of what moves bends,
-/// the rest comes along, so that the next frame needs no other one.
+/// Flat edges that bend are added to the hierarchy, which is then built again. If most of what moves bends, the rest is
+/// added, too, so that the next frame needs no other hierarchy.
 TEST(KeptEdges, WhatIsFlatByChanceIsTakenInAtOnce) {
   using Made = SceneEdges::Made;
   struct Case {
     double from;
-    double hills;  // of another sheet, which is never flat
+    double hills;  // height of another sheet, which is never flat
     Made next;
   };
   for (const auto& [from, hills, next] :
@@ -193,7 +193,7 @@ TEST(KeptEdges, WhatIsFlatByChanceIsTakenInAtOnce) {
   }
 }
 
-/// A mesh of this size has its leaves made on request, when the list of casters may be that of another light.
+/// A mesh of this size has its leaves made on request; by then the list of casters may be that of another light.
 TEST(SceneEdges, OfManyAreThoseThatAreMadeAtOnce) {
   scenes::Scene scene;
   std::vector<std::array<glm::dvec3, 3>> sheet;
@@ -221,7 +221,7 @@ TEST(SceneEdges, OfManyAreThoseThatAreMadeAtOnce) {
   EXPECT_LT(before, later.edges().tree().leaves.memory_bytes());
 }
 
-/// Boxes of what is in them, and no others.
+/// Expects that a tree is kept if it still holds the same casters, and only then.
 TEST(KeptTrees, HoldWhatTheyHeld) {
   std::size_t others = 0;
   for (std::uint32_t seed = 0; seed < 200; ++seed) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// The refusals that a test of methods may pass over: each is told by its cause, and any other is thrown on.
+// The refusals that a test of methods may ignore: each is recognised by its cause, and any other is rethrown.
 
 #include "base/error.hpp"
 #include "visibility/light_samples.hpp"
@@ -21,7 +21,7 @@ namespace penumbra::tests {
 inline bool says(const InputError& error, std::string_view words) {
   return std::string_view(error.what()).find(words) != std::string_view::npos;
 }
-/// Returns whether this is visibility::check_size's refusal of a light that float32 does not span together with the
+/// Returns whether this is visibility::check_size's refusal of a light that float32 cannot represent together with the
 /// scene.
 inline bool refuses_size(const InputError& error) {
   return says(error, "handles lights between 2^-28 and 2^28 of the scene's size");
@@ -38,8 +38,8 @@ inline bool spans(const visibility::SceneFloats& floats, const visibility::Light
   }
 }
 
-/// Returns what `answer` returns of a method that asks check_size about the frame of make_device_light; nothing if the
-/// method refuses the light, which it must do exactly where `spans` says no. Rethrows other refusals, and throws
+/// Returns the result of `answer`, for a method that applies check_size to the frame of make_device_light; nullopt if
+/// the method refuses the light, which it must do exactly if `spans` is false. Rethrows other refusals, and throws
 /// std::logic_error if a light that must be refused is not.
 template <typename Answer>
 auto unless_too_far_apart(const visibility::SceneFloats& floats, const visibility::Light& light, Answer&& answer)
@@ -55,7 +55,8 @@ auto unless_too_far_apart(const visibility::SceneFloats& floats, const visibilit
   }
 }
 
-/// The scene's only light; nothing if it is so small that it has no area in float32 at its distance from the origin.
+/// Returns the scene's only light; nullopt if it is so small that it has no area in float32 at its distance from the
+/// origin.
 inline std::optional<visibility::Light> light_with_area(const scenes::Scene& scene, const glm::dvec3& origin,
                                                         const visibility::SampleRequest& request) {
   try {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Plain C++ twins of depth-complexity variant=forest, with exact signs: by edges, as the method does it, and by
-// triangles, as docs/depth-complexity.md says what a counter is.
+// Plain C++ twins of depth-complexity variant=forest, with exact signs: by edges, as the method computes counters, and
+// by triangles, as docs/depth-complexity.md defines them.
 
 #include "tests/agreement/support.hpp"
 #include "visibility/tree/triangle_tree.hpp"
@@ -26,8 +26,8 @@ class PackedTwin {
     if (floats.triangles.size() > kMostTried) tree_ = visibility::make_triangle_tree(floats);
   }
 
-  /// The count at the light's centre, and the change of it by silhouettes on the straight segment to each light sample,
-  /// as variant=forest has it; nothing where a sign is exactly zero.
+  /// Returns the count at the light's centre plus its change by silhouettes on the straight segment to each light
+  /// sample, as in variant=forest; nullopt where a sign is exactly zero.
   [[nodiscard]] std::vector<std::optional<std::int16_t>> by_edges(std::size_t pixel) const {
     const glm::dvec3 p(samples_.p[pixel]), c(center_);
     std::int16_t constant = 0;
@@ -52,8 +52,8 @@ class PackedTwin {
     return counters;
   }
 
-  /// Σ σ over the triangles that p→l meets: σ is 1 where p and the light's centre are on opposite sides of the
-  /// triangle, −1 where they are on the same side.
+  /// Returns Σ σ over the triangles that p→l meets: σ is 1 if p and the light's centre are on opposite sides of the
+  /// triangle, −1 if they are on the same side.
   [[nodiscard]] int by_triangles(std::size_t pixel, std::uint32_t j) const {
     int sum = 0;
     for_each_met(pixel, light_.points[j], [&](std::uint32_t triangle) {
@@ -84,7 +84,8 @@ class PackedTwin {
     for (std::uint32_t i = 0; i < floats_.triangles.size(); ++i) try_it(i);
   }
 
-  static constexpr std::size_t kMostTried = 2000;  // triangles; of more, those near the segment
+  static constexpr std::size_t kMostTried =
+      2000;  // triangles; of more than these, only triangles near the segment are tried
   const visibility::SceneFloats& floats_;
   const visibility::ViewSamples& samples_;
   const visibility::Light& light_;
@@ -108,8 +109,9 @@ struct PackedTotals {
   }
 };
 
-/// Every pair of a picture: counters equal both twins without tolerance, masks say which are 0, and pairs without a
-/// counter have the true bit. `by_edges`: on how many pixels the twin by edges is asked, as it is slow.
+/// Checks every pair of a picture: counters equal both twins without tolerance, masks are set where counters are 0, and
+/// pairs without a counter have the true bit. `by_edges`: the number of pixels at which the twin by edges is computed,
+/// as it is slow.
 inline PackedTotals expect_packed(volumes::DepthCounters& method, const visibility::SceneFloats& floats,
                                   const visibility::ViewSamples& samples, const visibility::Light& light,
                                   std::size_t by_edges, const std::string& name) {

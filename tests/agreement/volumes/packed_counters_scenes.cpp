@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// depth-complexity variant=forest on the shipped scenes: its counters are those of the twins, and where it differs from
-// the ray caster it is too bright, never too dark.
+// Tests depth-complexity variant=forest on the shipped scenes: its counters equal those of the twins, and where it
+// differs from the ray caster it is too bright, never too dark.
 
 #include "tests/agreement/volumes/packed_counters.hpp"
 #include "tests/unit/shipped_scene.hpp"

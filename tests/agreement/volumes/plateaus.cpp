@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// plateaus against closed forms, against the least of many places along each edge, and against its C++ twin.
+// Tests plateaus against closed forms, against the minimum over many places along each edge, and against its C++ twin.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
@@ -37,7 +37,8 @@ class Plateaus : public tests::DeviceTest {
   }
 };
 
-/// A square over a floor: around its shadow, the distance over the radius of a vertex's disk.
+/// A square over a floor: around its shadow, V depends on the distance from it, divided by the radius of a vertex's
+/// disk.
 TEST_F(Plateaus, ASquareHasARimOfOneWidth) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
@@ -47,7 +48,8 @@ TEST_F(Plateaus, ASquareHasARimOfOneWidth) {
   scene.cameras.back().up = {0, 0, -1};
   const SoftStage stage(scene, device(), 48, 48);
   const std::vector<float> found = stage.run(*make_plateaus(device(), {}));
-  const double reach = std::sqrt(1 / std::numbers::pi) * 2 / (4 - 2);  // of the light's radius, by heights
+  const double reach =
+      std::sqrt(1 / std::numbers::pi) * 2 / (4 - 2);  // from the light's radius, in proportion to heights
   std::size_t in_rim = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
     if (!stage.judged(i)) continue;
@@ -61,7 +63,8 @@ TEST_F(Plateaus, ASquareHasARimOfOneWidth) {
   EXPECT_GT(in_rim, 100U);
 }
 
-/// The nearest place of an edge, between ends with disks of different sizes, is the best of many.
+/// The place of an edge that gives the deepest shadow, between ends with disks of different sizes, is the best of many
+/// places.
 TEST_F(Plateaus, TheDeepestPlaceOfAnEdgeIsFound) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> place(-1.5, 1.5), height(-0.5, 3.5);
@@ -99,7 +102,7 @@ TEST_F(Plateaus, IsItsTwin) {
   }
 }
 
-/// The method is known for the umbra of a hard shadow, so most of its wrong pixels are too dark.
+/// The method widens the umbra to that of a hard shadow, so most of its wrong pixels are too dark.
 TEST_F(Plateaus, UmbraeAreTooLarge) {
   for (const char* name : {"parallel-square", "contact", "fusion"}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

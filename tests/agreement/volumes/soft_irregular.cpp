@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft-irregular against the sum over all silhouettes of the light's centre at each view sample (SoftVisibility): its
-// lists lose no edge and no layer. With umbra=layers and arc=tangent the numbers are the same to the last bit. An arc
-// cosine is off by √(2 · 2⁻⁵²) where its angle is near 0 or π (the cosine rounds by 2⁻⁵² at most): an edge's share of
-// the light by half of that over π, 3.4e-9; V is stored in float, 2⁻²⁵. Layers that are joined (fusion=union) are held
-// against methods that count them at the same light samples by other means.
+// Compares soft-irregular with the sum over all silhouettes of the light's centre at each view sample (SoftVisibility):
+// its lists lose no edge and no layer. With umbra=layers and arc=tangent the numbers are the same to the last bit. An
+// arc cosine is off by √(2 · 2⁻⁵²) if its angle is near 0 or π (the cosine rounds by 2⁻⁵² at most), so an edge's share
+// of the light is off by half of that over π, 3.4e-9; V is stored in float, 2⁻²⁵. Joined layers (fusion=union) are
+// compared with methods that count them at the same light samples by other means.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/soft_stage.hpp"
@@ -80,7 +80,7 @@ TEST_F(SoftIrregularTwin, RoundLightsAndPolygons) {
   }
 }
 
-/// View samples on both sides of a light, and beside its frusta.
+/// View samples on both sides of a light, and outside its frusta.
 TEST_F(SoftIrregularTwin, LightsAmongTriangles) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -102,14 +102,15 @@ TEST_F(SoftIrregularTwin, LightsAmongTriangles) {
   EXPECT_GT(outside, 20U);
 }
 
-/// One board is exact; of two, one behind the other, the map knows one layer, and what the nearer one's outline gives
-/// back where the other still hides the light is a leak. layers has none where the boards do not overlap on the light.
+/// One board is exact. Of two boards, one behind the other, the map has only one layer: light that the nearer board's
+/// outline gives back although the other board still hides it is a leak. umbra=layers has no leak where the boards do
+/// not overlap on the light.
 TEST_F(SoftIrregularTwin, StackedBoardsLeak) {
   scenes::Scene one = tests::floor_and_light(0.6);
   tests::add_object(one, "board", tests::quad({0, 1, 0}, {0.8, 0, 0}, {0, 0, -0.8}));
   scenes::Scene two = one;
   tests::add_object(two, "lower", tests::quad({0, 0.5, 0}, {2, 0, 0}, {0, 0, -2}));
-  two.cameras[0] = tests::camera({0, 0.3, 4.5}, {0, 0, 0});  // under both
+  two.cameras[0] = tests::camera({0, 0.3, 4.5}, {0, 0, 0});  // below both boards
   const auto errors = [&](const scenes::Scene& scene, const char* umbra) {
     const SoftStage stage(scene, device(), 32, 32);
     const auto method = make_soft_irregular({{"umbra", umbra}});
@@ -121,7 +122,7 @@ TEST_F(SoftIrregularTwin, StackedBoardsLeak) {
   EXPECT_LE(errors(two, "layers").largest, errors(two, "map").largest);
 }
 
-/// With the silhouettes of each view sample V is the twin's, and of the pixels that nobody wants it is not a number.
+/// With the silhouettes of each view sample, V equals the twin's; V of pixels that are not wanted is NaN.
 TEST_F(SoftIrregularTwin, SilhouettesOfTheReceiver) {
   for (const char* name : {"broken", "contact", "fusion", "textured-light"}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 24, 18);
@@ -142,8 +143,8 @@ TEST_F(SoftIrregularTwin, SilhouettesOfTheReceiver) {
   }
 }
 
-/// Methods at the light's samples, in judged pixels: what of soft-irregular's V differs from the other's by half a
-/// light sample and more.
+/// Compares with methods that use light samples, in judged pixels: counts by how many light samples soft-irregular's V
+/// differs, rounded to whole samples.
 class SoftIrregularUnion : public SoftIrregularTwin {
  protected:
   struct Compared {
@@ -175,8 +176,8 @@ class SoftIrregularUnion : public SoftIrregularTwin {
   }
 };
 
-/// The silhouettes of the centre at 16 points are the counters of Forest et al. 2008. A light sample may be on an edge
-/// within rounding.
+/// The silhouettes of the centre, at 16 points, give the counters of Forest et al. 2008. A light sample may be on an
+/// edge within rounding.
 TEST_F(SoftIrregularUnion, OfTheCentreIsForests) {
   for (const char* name : {"contact", "fusion", "bunny", "large-penumbra"}) {
     const auto forest = make_depth_complexity(device(), {{"variant", "forest"}});
@@ -186,7 +187,7 @@ TEST_F(SoftIrregularUnion, OfTheCentreIsForests) {
   }
 }
 
-/// The silhouettes of each view sample are those of the layers that it sees: joined, the truth of each pair.
+/// The silhouettes of each view sample bound the layers that it sees: joined, these give the truth of each pair.
 TEST_F(SoftIrregularUnion, OfTheReceiverIsTheTruthOfPairs) {
   for (const char* name : {"contact", "fusion", "broken"}) {
     const auto exact = vsm::make_hierarchical_penumbra({});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// A scene as soft shadow volumes see it, beside their C++ twin and the exact areas.
+// A scene for tests of soft shadow volumes, with their C++ twin and the exact areas.
 
 #include "mesh/shapes/shapes.hpp"
 #include "areas/exact_area.hpp"
@@ -30,12 +30,12 @@ struct SoftStage : Stage {
     return {samples.p[pixel], static_cast<std::uint32_t>(samples.triangle[pixel]), samples.facing[pixel]};
   }
 
-  /// V of the whole picture.
+  /// Returns V of the whole picture.
   [[nodiscard]] std::vector<float> run(visibility::Method& method, std::uint32_t rows = 0) const {
     return tests::run(method, *this, rows).visibility;
   }
 
-  /// V of judged pixels by `of`, NaN elsewhere.
+  /// Returns V of judged pixels by `of`, NaN elsewhere.
   template <typename Of>
   [[nodiscard]] std::vector<double> at_judged(const Of& of) const {
     std::vector<double> result(samples.size(), std::numeric_limits<double>::quiet_NaN());
@@ -95,7 +95,7 @@ inline std::vector<Corners> triangles_of(const mesh::TriangleSoup& soup) {
   return result;
 }
 
-/// A floor under a square light of this half-size at height 5; a camera above the floor.
+/// Returns a floor under a square light of this half-size at height 5, and a camera above the floor.
 inline scenes::Scene floor_and_light(double half) {
   scenes::Scene scene;
   add_object(scene, "floor", quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft-volume-blend: soft-volume where one object stands alone, less than its sum where objects overlap.
+// Tests soft-volume-blend: it equals soft-volume where one object stands alone, and is less than its sum where objects
+// overlap.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 #include "tests/unit/mesh/shuffled.hpp"
@@ -30,8 +31,8 @@ TEST(SoftVolumeBlendRule, StaysBetweenTheLargerAndTheSum) {
     EXPECT_EQ(blend(a, {}).share, a.share);
   }
   const Cover left{0.5, {0, 0, 0.5, 1}}, right{0.5, {0.5, 0, 1, 1}};
-  EXPECT_EQ(blend(left, right).share, 1);   // boxes apart: the sum
-  EXPECT_EQ(blend(left, left).share, 0.5);  // full boxes, one on the other: one of them
+  EXPECT_EQ(blend(left, right).share, 1);   // separate boxes: the sum
+  EXPECT_EQ(blend(left, left).share, 0.5);  // full boxes, one on the other: only one of them counts
 }
 
 class SoftVolumeBlend : public tests::DeviceTest {
@@ -39,7 +40,7 @@ class SoftVolumeBlend : public tests::DeviceTest {
   static std::vector<float> run(const SoftStage& stage) { return stage.run(*make_soft_volume_blend(device(), {})); }
 };
 
-/// Both add the same areas, once in quarters: the tolerance of soft_volume_twin.cpp, four times.
+/// Both add the same areas, one of them in quarters: four times the tolerance of soft_volume_twin.cpp.
 TEST_F(SoftVolumeBlend, OneObjectIsAsSoftVolume) {
   for (const glm::dvec3& at : {glm::dvec3(0, 1, 0), glm::dvec3(0.3, 1.5, -0.2)}) {
     scenes::Scene scene = tests::floor_and_light(0.6);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft-volume against exact areas: right where its model holds, and off by what the model predicts where not.
+// Compares soft-volume with exact areas: it is right where its model holds, and elsewhere wrong by as much as the model
+// predicts.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
@@ -18,8 +19,8 @@ class SoftVolumeExact : public tests::DeviceTest {
   }
 };
 
-/// Convex boards in convex position beside each other, tilted, at different heights, no two of which a light point sees
-/// one behind the other: each has a cell of its own of a 3 × 3 grid, and shadows of cells stay apart.
+/// Tilted convex boards side by side, at different heights, no two of which are behind one another as seen from a point
+/// of the light: each has its own cell of a 3 × 3 grid, and shadows of cells stay apart.
 TEST_F(SoftVolumeExact, PlanarConvexOccludersThatDoNotOverlap) {
   for (const double half : {0.1, 0.4}) {
     scenes::Scene scene = tests::floor_and_light(half);
@@ -46,8 +47,8 @@ TEST_F(SoftVolumeExact, PlanarConvexOccludersThatDoNotOverlap) {
   }
 }
 
-/// A solid's silhouette from the centre is not the receiver's. The twin says by how much that is wrong: the same
-/// integral from either silhouette.
+/// A solid's silhouette from the centre is not the receiver's. The twin predicts the error: the difference of the same
+/// integral with either silhouette.
 TEST_F(SoftVolumeExact, ASolidIsOffByWhatItsSilhouettesPredict) {
   for (const bool cube : {false, true}) {
     for (const double half : {0.25, 0.5, 1.0}) {
@@ -69,23 +70,22 @@ TEST_F(SoftVolumeExact, ASolidIsOffByWhatItsSilhouettesPredict) {
       fmt::print("{}, light {}: off by {:.4f} at most, as predicted within {:.1e}\n", cube ? "cube" : "sphere", half,
                  largest, worst);
       EXPECT_LE(worst, 1e-3);
-      // A cube under a light no wider than itself has nothing to predict: the light sees the cube's top alone from
-      // everywhere.
+      // A cube under a light no wider than itself has no error to predict: the whole light sees only the cube's top.
       EXPECT_GT(largest, !cube || half > 0.5 ? 1e-3 : 0.0);
     }
   }
 }
 
-/// Two equal boards, one exactly behind the other as seen from the light's centre and some p: they hide what one hides,
-/// and are added.
+/// Two equal boards, one exactly behind the other as seen from the light's centre and some p: they hide as much as one,
+/// but soft-volume adds them.
 TEST_F(SoftVolumeExact, FusionIsAdded) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   tests::add_object(scene, "low", tests::quad({0, 1, 0}, {0.4, 0, 0}, {0, 0, -0.4}));
   tests::add_object(scene, "high", tests::quad({0, 1.25, 0}, {0.4, 0, 0}, {0, 0, -0.4}));
   const SoftStage stage(scene, device(), 64, 48);
   const std::vector<double> exact = stage.exact();
-  // A board at height y with half-size r covers, as seen from p at height 0, the product of two overlaps of [−1, 1]² of
-  // the light (half-size s at height h).
+  // A board at height y with half-size r covers, as seen from p at height 0, the product of two overlaps with [−1, 1]²
+  // of the light (half-size s at height h).
   const std::vector<double> sum = stage.at_judged([&](std::size_t i) {
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
     if (p.y > 0.5) return std::numeric_limits<double>::quiet_NaN();

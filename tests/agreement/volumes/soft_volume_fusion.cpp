@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft-volume with other rules than the sum: each object's share against a scene in which it casts alone, and all of
-// them against exact areas. Tolerance: V is stored in float, twice here.
+// Tests soft-volume with other rules than the sum: each object's share against a scene in which only that object casts,
+// and all rules against exact areas. Tolerance: V is stored in float, twice here.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
@@ -30,8 +30,8 @@ class SoftVolumeFusion : public tests::DeviceTest {
   }
 };
 
-/// Each rule is what its name says, applied to V with the floor and one of the boards alone, less what the floor hides
-/// of itself: nothing.
+/// Each rule does what its name says with V of the floor and one of the boards alone; the floor hides nothing of
+/// itself.
 TEST_F(SoftVolumeFusion, FusesWhatEachObjectHides) {
   const scenes::Scene scene = boards();
   const SoftStage stage(scene, device(), 48, 36);
@@ -60,7 +60,8 @@ TEST_F(SoftVolumeFusion, FusesWhatEachObjectHides) {
   }
 }
 
-/// Shares of planar boards are each right, so the visible part lies between sum and max (course notes, equation 1.5).
+/// Shares of planar boards are right one by one, so the visible part lies between sum and max (course notes, equation
+/// 1.5).
 TEST_F(SoftVolumeFusion, BoundsWhatIsVisible) {
   const SoftStage stage(boards(), device(), 48, 36);
   const std::vector<double> exact = stage.exact();
@@ -80,7 +81,7 @@ TEST_F(SoftVolumeFusion, BoundsWhatIsVisible) {
   EXPECT_LT(rmse["average"], rmse["sum"]);
 }
 
-/// Parts of the light are fused each by itself; one occluder is the same by all rules.
+/// Parts of the light are fused separately; for one occluder all rules give the same.
 TEST_F(SoftVolumeFusion, KeepsTilesPartsAndSingleOccluders) {
   const SoftStage stage(boards(), device(), 48, 36);
   const auto method = make_soft_volume(device(), {{"fusion", "product"}, {"split", "2"}});
@@ -98,7 +99,7 @@ TEST_F(SoftVolumeFusion, KeepsTilesPartsAndSingleOccluders) {
   }
 }
 
-/// Nothing below the horizon is hidden: rules fuse shares of what is above it.
+/// Nothing below the horizon is hidden: rules fuse shares of the part above it.
 TEST_F(SoftVolumeFusion, SharesAreOfWhatIsAboveTheHorizon) {
   FusedShare share;
   share.add(0.2, 0.5);
@@ -123,9 +124,9 @@ scenes::Scene edges_at_the_centre() {
   return scene;
 }
 
-/// Floats decide with as=published on which side of the centre an edge passes. Where they are wrong, the number of
-/// layers is off by one, and V by the part of the light on one side of an edge through its centre. Repaired, no pixel
-/// is wrong.
+/// With as=published, floats decide on which side of the centre an edge passes. Where they are wrong, the number of
+/// layers is off by one, and V by the part of the light on one side of an edge through its centre. With as=repaired, no
+/// pixel is wrong.
 TEST_F(SoftVolumeFusion, SidesByFloatsAreAWholeLayerOff) {
   const SoftStage stage(edges_at_the_centre(), device(), 65, 65);
   const std::vector<double> right = stage.twin(Viewer::center);
@@ -155,7 +156,8 @@ TEST_F(SoftVolumeFusion, SidesByFloatsAreAWholeLayerOff) {
   }
 }
 
-/// One constant is a whole light off there; the votes of three are right except where a vertex is at the centre.
+/// Here one count can be wrong by a whole light; the majority of three counts is right except where a vertex is at the
+/// centre.
 TEST_F(SoftVolumeFusion, VotesRepairSidesThatFloatsGetWrong) {
   const SoftStage stage(edges_at_the_centre(), device(), 65, 65);
   const std::vector<double> right = stage.twin(Viewer::center);
@@ -172,7 +174,8 @@ TEST_F(SoftVolumeFusion, VotesRepairSidesThatFloatsGetWrong) {
   EXPECT_LE(wrong, 1U);
 }
 
-/// All three agree where silhouettes are those of the centre; elsewhere votes are no worse than one method alone.
+/// All three counts agree where silhouettes are those of the centre; elsewhere the majority is no worse than one count
+/// alone.
 TEST_F(SoftVolumeFusion, VotesAgreeOnShippedScenes) {
   for (const char* name : {"parallel-square", "contact", "fusion"}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

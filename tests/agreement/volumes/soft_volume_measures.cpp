@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the other measures of what lies beyond an edge: a table, and a texture texel by texel.
+// Tests the other ways to measure the part beyond an edge: a table, and a texture texel by texel.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
@@ -30,10 +30,10 @@ class SoftVolumeMeasures : public tests::DeviceTest {
     scene.lights[0].shape =
         scenes::Disk{rectangle.center, glm::cross(rectangle.half_u, rectangle.half_v), glm::length(rectangle.half_u)};
   }
-  /// Each pixel against the twin. The twin gives each edge its own whole weight, while the shader's weights depend on
-  /// neighbouring edges. Tolerance: that of soft_volume_twin.cpp, and for each edge on the light four walks over texels
-  /// (one of the shader, three of the twin), each off by at most 2⁻²⁴ · brightest where the edge is nearly upright
-  /// (property/volumes/coverage_textures.cpp).
+  /// Compares each pixel with the twin. The twin gives each edge its whole weight separately, while the shader's
+  /// weights depend on neighbouring edges. Tolerance: that of soft_volume_twin.cpp, and for each edge on the light four
+  /// walks over texels (one by the shader, three by the twin), each off by at most 2⁻²⁴ · brightest if the edge is
+  /// nearly upright (property/volumes/coverage_textures.cpp).
   static void expect_twin(const SoftStage& stage, const std::vector<float>& found, const std::string& name) {
     const Casters casters = casters_of(stage.floats, stage.light);
     const SoftVisibility soft(stage.floats, stage.light, casters);
@@ -55,7 +55,7 @@ class SoftVolumeMeasures : public tests::DeviceTest {
     fmt::print("{}: {} in penumbra, off by {:.1e} at most (allowed: {:.1e})\n", name, penumbra, largest, loosest);
     EXPECT_GT(penumbra, 50U) << name;
   }
-  /// A checkered texture with a dark corner.
+  /// Returns a checkered texture with a dark corner.
   static scenes::Texture checkered(std::uint32_t width, std::uint32_t height) {
     scenes::Texture texture;
     texture.width = width;
@@ -85,7 +85,7 @@ TEST_F(SoftVolumeMeasures, TheTableKeepsWithinItsBound) {
         const LayerSum layers = soft.at(stage.lit(i), Viewer::center);
         double swept = 0;
         for (const CoveredEdge& edge : layers.edges) {
-          // The edge's ends move by `reach` at most, so it grows by no more than twice that.
+          // The edge's ends move by at most `reach`, so its length grows by at most twice that.
           const double length = glm::length(edge.clipped.to - edge.clipped.from);
           swept += std::abs(edge.multiplicity) * reach * (length + (length + 2 * reach)) / 2;
         }
@@ -124,7 +124,7 @@ TEST_F(SoftVolumeMeasures, TheShippedTexturedLight) {
   expect_twin(stage, run(stage), "textured-light");
 }
 
-/// Boards beside each other, so that the method's model holds: exact areas say what the texture hides.
+/// Boards side by side, so that the method's model holds: exact areas give the part of the texture that they hide.
 TEST_F(SoftVolumeMeasures, TexturedLightsAgreeWithTheExactArea) {
   scenes::Scene scene = tests::floor_and_light(0.4);
   for (int i = 0; i < 9; ++i) {
@@ -154,8 +154,7 @@ TEST_F(SoftVolumeMeasures, ATextureIsRefusedWhereItIsTooWide) {
   EXPECT_THROW(TextureWeights{texture}, ResourceError);
 }
 
-/// The light's outline, and where the table's 1024 points are on it: rows of 32 from corner to corner; 16 circles
-/// of 64.
+/// The light's outline, and the table's 1024 points on it: 32 rows from corner to corner, or 16 circles of 64 points.
 struct TablePoints {
   LightOutline outline;
   glm::dvec2 (*at)(int index);
@@ -183,12 +182,12 @@ TEST(CoverageTable, NoPlaceIsFartherFromItsPointThanIsSaid) {
       farthest = std::max(farthest, nearest);
     }
     EXPECT_LE(farthest, reach);
-    EXPECT_GE(farthest, 0.93 * reach);  // not all of the corners of cells are found
+    EXPECT_GE(farthest, 0.93 * reach);  // the corners of cells, where the distance is largest, are not all found
   }
 }
 
 TEST(CoverageTable, ALoopLeavesItsAreaOut) {
-  // The part beyond the three sides is the light without the triangle, and the whole light counts 0 in a closed loop.
+  // The part beyond the three sides is the light without the triangle; the whole light counts as 0 in a closed loop.
   for (const TablePoints& points : {kRectanglePoints, kDiskPoints}) {
     const std::vector<double> table = coverage_table(points.outline, nullptr);
     std::mt19937 random(5);
@@ -202,7 +201,7 @@ TEST(CoverageTable, ALoopLeavesItsAreaOut) {
         const glm::dvec2 a = points.at(from), b = points.at(to);
         twice += a.x * b.y - a.y * b.x;
       }
-      // Some twenty roundings of numbers below 4.
+      // About twenty rounding errors of numbers below 4.
       ASSERT_NEAR(sum, -0.5 * twice / points.outline.area, 1e-14) << corner[0] << " " << corner[1] << " " << corner[2];
     }
   }
@@ -210,8 +209,8 @@ TEST(CoverageTable, ALoopLeavesItsAreaOut) {
 
 TEST(CoverageTable, NothingIsBeyondASideAndASegmentBeyondAChord) {
   const std::vector<double> square = coverage_table(kRectanglePoints.outline, nullptr);
-  constexpr std::array kCorners = {31, 1023, 992, 0};  // from right below, counter-clockwise
-  for (std::size_t i = 0; i < 3; ++i)                  // the last side goes past the direction where fans begin
+  constexpr std::array kCorners = {31, 1023, 992, 0};  // from the lower right, counter-clockwise
+  for (std::size_t i = 0; i < 3; ++i)                  // the last side crosses the direction in which fans begin
     EXPECT_NEAR(square[static_cast<std::size_t>(kCorners[i] * 1024 + kCorners[i + 1])], 0, 1e-15) << i;
   const std::vector<double> disk = coverage_table(kDiskPoints.outline, nullptr);
   for (const int step : {1, 7, 31}) {

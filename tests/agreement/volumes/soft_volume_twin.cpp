@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// soft-volume against its C++ twin, pixel by pixel.
+// Compares soft-volume with its C++ twin, pixel by pixel.
 //
-// Tolerance: each edge's term is rounded to whole multiples of 2⁻³², so n of them are off by n 2⁻³³. Either side makes
-// a term, a share of the light, by at most 2⁸ operations in double, each off by 2⁻⁵³ of a value that is at most 1: 2⁻⁴⁴
-// between them. V is stored in float, 2⁻²⁵. n is at most the number of silhouette edges.
+// Tolerance: each edge's term is rounded to a multiple of 2⁻³², so n terms are off by n 2⁻³³. Both sides compute a
+// term, a share of the light, with at most 2⁸ operations in double, each off by 2⁻⁵³ of a value that is at most 1: 2⁻⁴⁴
+// together. V is stored in float, 2⁻²⁵. n is at most the number of silhouette edges.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/soft_stage.hpp"
@@ -43,7 +43,7 @@ class SoftVolumeTwin : public tests::DeviceTest {
     for (const float v : found) ASSERT_TRUE(v >= 0 && v <= 1) << name << ": " << v;
   }
 
-  /// The stage with its light replaced by a disk of the light's first half-axis as radius.
+  /// Returns the scene with its light replaced by a disk whose radius is the light's first half-axis.
   static scenes::Scene with_disk(scenes::Scene scene) {
     const auto rectangle = std::get<scenes::Rectangle>(scene.lights.at(0).shape);
     scene.lights[0].shape =
@@ -86,8 +86,8 @@ TEST_F(SoftVolumeTwin, TheCameraMayBeInWedges) {
   expect_twin("through a shifted lens", scene);
 }
 
-/// Edges through the light's centre as seen from two lines of pixels, corners from one pixel: a sign that rounding
-/// decided otherwise than the count would cost a whole light.
+/// Edges through the light's centre as seen from two lines of pixels, corners as seen from one pixel: a sign that
+/// differs from the exact count by rounding would cost a whole light.
 TEST_F(SoftVolumeTwin, EdgesAndVerticesAtTheCentre) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
@@ -100,8 +100,8 @@ TEST_F(SoftVolumeTwin, EdgesAndVerticesAtTheCentre) {
   expect_twin("below the middle, disk", with_disk(scene), 65, 65, {}, 0.04);
 }
 
-/// Soups of a tiny lattice, where p lies on triangles and in their planes, and everything coincides. The light is
-/// beyond them: edges in its plane are a known failure.
+/// Soups on a tiny lattice, where p lies on triangles and in their planes, and everything coincides. The light is
+/// outside their bounds: edges in its plane are a known failure.
 TEST_F(SoftVolumeTwin, WhereEverythingCoincides) {
   std::size_t pixels = 0, differing = 0, on_host = 0;
   const auto method = make_soft_volume(device(), {});

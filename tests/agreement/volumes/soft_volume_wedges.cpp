@@ -101,7 +101,7 @@ TEST_F(SoftVolumeWedges, WhereEverythingCoincides) {
   }
 }
 
-/// One method, and a light that moves from call to call, and back: nothing of the frame before may remain.
+/// One method, with a light that moves from call to call, and back: nothing of an earlier frame may remain.
 TEST_F(SoftVolumeWedges, TwentyFramesOfAMovingLight) {
   scenes::Scene scene = tests::shipped_scene("fusion");
   const auto on_device = make_soft_volume(device(), {}), on_host = make_soft_volume(device(), {{"wedges", "host"}});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// wedge-ramp against its C++ twin: the exact count and the ramps of all edges. Tolerance: soft_volume_twin.cpp's.
+// Compares wedge-ramp with its C++ twin: the exact count and the ramps of all edges. Tolerance: that of
+// soft_volume_twin.cpp.
 
 #include "tests/agreement/volumes/soft_stage.hpp"
 
@@ -54,8 +55,8 @@ TEST_F(WedgeRamp, IsExactUnderALongEdge) {
   EXPECT_GT(errors.penumbra, 500U);
 }
 
-/// View samples on an edge of their own triangle, where the wedge has no width: nothing stands before the light, and so
-/// it is seen. (Front and back are both 0 there: their quotient is no number.)
+/// View samples on an edge of their own triangle, where the wedge has no width: nothing is in front of the light, so it
+/// is visible. (Front and back are both 0 there, and their quotient is NaN.)
 TEST_F(WedgeRamp, OnAnEdgeTheShadowIsHard) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", {{glm::dvec3(2, 0, 2), glm::dvec3(2, 0, 0), glm::dvec3(-2, 0, -2)}});
@@ -81,7 +82,8 @@ TEST_F(WedgeRamp, RefusesWhatItCannotDo) {
       InputError);
 }
 
-/// A ramp for each edge fails at corners, where it is not the area, and on meshes finer than their penumbra is wide.
+/// One ramp for each edge fails at corners, where it is not the area, and on meshes with triangles smaller than their
+/// penumbra.
 TEST_F(WedgeRamp, ItsFailuresAreShown) {
   for (const auto& [name, least] : {std::pair{"parallel-square", 0.01}, {"bunny", 0.05}}) {
     const SoftStage stage(tests::shipped_scene(name), device(), 48, 36);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pleats so steep that the normals of an edge's two triangles fill nearly a half-space, seen along the middle of that
-// half-space by view samples close together: where the culling by cones of normals has least to spare.
+// half-space by view samples close together: here the culling by cones of normals has its smallest margin.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/agreement/support.hpp"
@@ -19,13 +19,13 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// Found among millions of boxes of view samples: one of the strip's edges is a silhouette for one of them.
+/// Found among millions of boxes of view samples: one of the strip's edges is a silhouette from one of the boxes.
 struct Pleats {
-  glm::dvec3 across, up;       ///< of the strip's profile, unit vectors
+  glm::dvec3 across, up;       ///< axes of the strip's profile, unit vectors
   double height, half_length;  ///< of a pleat
-  double steep, less;          ///< angles of its flanks, degrees
+  double steep, less;          ///< angles of its flanks in degrees
   glm::vec3 middle, half;      ///< of the view samples' box
-  glm::dvec3 light;            ///< its centre, behind the strip
+  glm::dvec3 light;            ///< the light's centre, behind the strip
   double half_size;            ///< of the light
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges seen at the corner of a light's window by view samples close together: a count of what hides that corner in
-// two ways, by floats at where they put it and in double at where it is, must not take the one for the other.
+// Edges seen at the corner of a light's window by view samples close together. The number of layers over that corner is
+// counted in two ways: by floats at the place that they compute, and in double at the exact place. One must not be
+// taken for the other.
 
 #include "base/error.hpp"
 #include "tests/agreement/mask_methods.hpp"
@@ -21,8 +22,8 @@
 namespace penumbra::volumes {
 namespace {
 
-/// A polygon light, and one triangle with an edge in front of its window's corner as p sees it. `inside`: the edge is
-/// one between two triangles that together hide all around.
+/// Returns a polygon light, and a triangle with an edge in front of its window's corner as p sees it. With `inside`,
+/// the edge is between two triangles that together hide everything around it.
 tests::OneLightScene at_the_corner(std::uint32_t seed, bool inside) {
   tests::Draws aim(seed);
   const double size = aim.power(-4, -1.5), height = size * aim.power(-0.5, 1);
@@ -51,9 +52,9 @@ tests::OneLightScene at_the_corner(std::uint32_t seed, bool inside) {
   return scene;
 }
 
-/// A light of some ulps, whose frame is rounded by as much as it is large, and an edge between its frame's corner and
-/// the same place in the plane of the stored points, as p sees them: 20 scenes a light. Nothing where light samples
-/// show how far apart these are.
+/// Returns a light of a few ulps, whose frame has rounding errors as large as itself, and an edge that p sees between
+/// the frame's corner and the same place in the plane of the stored points: 20 scenes for each light. Returns nullopt
+/// if the two places are closer than 1.5 times the light samples' deviation.
 std::optional<tests::OneLightScene> at_the_frames_corner(std::uint32_t scene_seed) {
   const std::uint32_t seed = scene_seed / 20;
   tests::Draws aim(seed);
@@ -114,10 +115,11 @@ TEST_F(WindowCorners, AreWhereMasksCountFrom) {
   }
 }
 
-/// Wrong seeds of the first million without what is between the frame's corner and the counted one.
+/// Seeds among the first million that are wrong if the deviation leaves out the distance between the frame's corner and
+/// the counted one.
 constexpr std::array<std::uint32_t, 6> kRoundedFrames{17465, 58142, 104227, 142683, 162197, 258853};
 
-/// Returns the number of scenes; lights whose shape floats cannot hold are refused.
+/// Returns the number of scenes; lights whose shape floats cannot represent are refused.
 std::size_t are_right(const render::Device& device, std::span<const std::uint32_t> seeds) {
   const std::array methods{tests::kNativeEdgeScatter.make(device, {}), tests::kNativeDepthComplexity.make(device, {})};
   std::size_t scenes = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// consumer SCENE.json: renders with the installed library, and prints what it found. Replaces operator new, which a
-// library must leave to its host.
+// consumer SCENE.json: renders with the installed library, and prints some results. Replaces operator new, which a
+// library must leave to the calling program.
 
 #include <penumbra/penumbra.hpp>
 

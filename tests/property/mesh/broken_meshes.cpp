@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The generator of broken meshes against the diagnosis: the defects that a mesh was made to have are those that are
-// found in it. The known answers are formulas; the diagnosis searches.
+// Tests the generator of broken meshes against the diagnosis: a mesh has exactly the defects that were put into it. The
+// expected counts are formulas; the diagnosis searches.
 
 #include "base/error.hpp"
 #include "mesh/shapes/broken_meshes.hpp"
@@ -109,7 +109,7 @@ TEST(BrokenMeshes, LargeOnesFull) {
   EXPECT_TRUE(has_what_it_was_made_to_have({names(), 64}));
 }
 
-/// The lattice is exact at any place and of any size, also ones that nobody would choose.
+/// The lattice is exact at any place and for any size, also for unusual ones.
 TEST(BrokenMeshes, AnywhereAtAnyScale) {
   for (const double half_extent : {0.1, 1.7, 3e-5, 1e6}) {
     for (const glm::dvec3& center : {glm::dvec3(0.1, 0.7, -0.3), glm::dvec3(1000.0 / 3, -77.7, 1e-3)}) {
@@ -123,7 +123,7 @@ TEST(BrokenMeshes, AnywhereAtAnyScale) {
       const double longest = std::max({half.x, half.y, half.z});
       EXPECT_LE(longest, half_extent);
       EXPECT_GT(longest, half_extent / 2);
-      // The centre is off by half a step along each axis; seven parts in a row are more than 2^14 steps wide.
+      // The centre is off by half a lattice step along each axis; seven parts in a row are more than 2^14 steps wide.
       EXPECT_LE(glm::length(middle - scaled), std::sqrt(3.0) / 2 * std::ldexp(2 * half_extent, -14));
     }
   }
@@ -162,7 +162,7 @@ TEST(BrokenMeshes, WhatCannotBeIsRefused) {
             std::string::npos);
 }
 
-/// A gap that floats can tell, one that they cannot, and zeros of both signs.
+/// A gap that remains in float32, one that does not, and zeros of both signs.
 TEST(BrokenMeshes, GapsAndZerosAreThere) {
   const auto vertices_in_float = [](const std::string& name) {
     const BrokenMesh mesh = make_broken_mesh({{name}, 3});
@@ -176,7 +176,7 @@ TEST(BrokenMeshes, GapsAndZerosAreThere) {
     return mesh.known.vertices - places.size();
   };
   EXPECT_EQ(vertices_in_float("gap"), 0u);
-  EXPECT_EQ(vertices_in_float("lost-gap"), 8u);  // all around a patch of two cells
+  EXPECT_EQ(vertices_in_float("lost-gap"), 8u);  // all vertices around a patch of two cells
   const auto& positions = make_broken_mesh({{"negative-zero"}, 3}).soup.positions;
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool sign : {false, true}) {
@@ -192,7 +192,7 @@ TEST(LatticeSoups, AreAFunctionOfTheirParameters) {
   EXPECT_NE(soup.positions, make_lattice_soup({100, 3, 8}).positions);
   EXPECT_EQ(soup.triangles.size(), 100u);
   EXPECT_EQ(soup.object, std::vector<std::uint32_t>(100, 0));
-  // The first corners of seed 7, whatever the platform: mt19937 is specified, distributions are not.
+  // The first corners for seed 7 are the same on every platform: mt19937 is specified, distributions are not.
   std::mt19937 random(7);
   for (int i = 0; i < 9; ++i) {
     const glm::dvec3& p = soup.positions[static_cast<std::size_t>(i / 3)];
@@ -200,7 +200,7 @@ TEST(LatticeSoups, AreAFunctionOfTheirParameters) {
   }
 }
 
-/// Coincidences are the rule: on a lattice of 27 points any two hundred triangles have each of these.
+/// Coincidences are the rule: among any two hundred triangles on a lattice of 27 points there are some of each kind.
 TEST(LatticeSoups, HaveCoincidences) {
   for (std::uint32_t seed = 0; seed < 8; ++seed) {
     const KnownDiagnosis found = found_in(make_lattice_soup({200, 2, seed}));

@@ -41,7 +41,7 @@ bool has_corner(const Corners& t, const Point& p) {
 bool has_edge(const Corners& t, const Segment& e) {
   return has_corner(t, e.first) && has_corner(t, e.second);
 }
-/// Returns whether the triangle runs along the edge from its first end to its second.
+/// Returns whether the triangle's winding follows the edge from its first end to its second.
 bool runs_along(const Corners& t, const Segment& e) {
   for (std::size_t i = 0; i < 3; ++i) {
     if (t[i] == e.first) return t[(i + 1) % 3] == e.second;
@@ -55,7 +55,7 @@ Corners sorted(Corners t) {
 Corners reversed(const Corners& t) {
   return {t[0], t[2], t[1]};
 }
-/// A key of t that does not depend on its first corner, but does depend on its winding.
+/// Returns a key of t that does not depend on its first corner, but does depend on its winding.
 Corners rotated(Corners t) {
   std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   return t;
@@ -63,7 +63,8 @@ Corners rotated(Corners t) {
 
 using Linked = std::function<bool(std::size_t, std::size_t)>;
 
-/// The numbers below `count` in sets: linked numbers share a set. Gives each number the smallest of its set.
+/// Divides the numbers below `count` into sets: linked numbers share a set. Returns for each number the smallest number
+/// of its set.
 std::vector<std::size_t> sets(std::size_t count, const Linked& linked) {
   std::vector<std::size_t> set(count, count);
   const std::function<void(std::size_t, std::size_t)> flood = [&](std::size_t i, std::size_t name) {
@@ -83,7 +84,7 @@ std::uint64_t count_sets(std::size_t count, const Linked& linked) {
 
 using Around = std::map<Segment, std::vector<std::size_t>>;
 
-/// Triangles at vertex v, linked where they share an edge that ends there.
+/// Returns the triangles at vertex v in sets: triangles that share an edge at v are linked.
 std::vector<std::size_t> fans_at(const std::vector<Corners>& soup, const Point& v) {
   return sets(soup.size(), [&](std::size_t i, std::size_t j) {
     if (!has_corner(soup[i], v) || !has_corner(soup[j], v)) return false;
@@ -92,7 +93,7 @@ std::vector<std::size_t> fans_at(const std::vector<Corners>& soup, const Point& 
 }
 
 std::uint64_t count_boundary_loops(const std::vector<Corners>& soup, const Around& around) {
-  std::vector<std::pair<Segment, std::size_t>> boundary;  // and its triangle
+  std::vector<std::pair<Segment, std::size_t>> boundary;  // with the triangle at each edge
   for (const auto& [e, triangles] : around) {
     if (triangles.size() == 1) boundary.emplace_back(e, triangles[0]);
   }
@@ -108,10 +109,12 @@ std::uint64_t count_boundary_loops(const std::vector<Corners>& soup, const Aroun
   });
 }
 
-/// Winds neighbours alike. Most triangles of each patch keep their winding (of equally many, those of the triangle that
-/// is first in space); if a patch cannot be wound alike, all keep theirs.
+/// Returns the soup with neighbours wound alike. Most triangles of each patch keep their winding (if equally many would
+/// be turned either way, the triangle that is first in space keeps its winding); if a patch cannot be wound alike, all
+/// of its triangles keep theirs.
 std::vector<Corners> agreeing(const std::vector<Corners>& soup, const Around& around) {
-  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(soup.size());  // and: are wound against each other
+  std::vector<std::vector<std::pair<std::size_t, bool>>> neighbours(
+      soup.size());  // the neighbour, and whether the two are wound against each other
   for (const auto& [e, triangles] : around) {
     if (triangles.size() != 2 || sorted(soup[triangles[0]]) == sorted(soup[triangles[1]])) continue;
     const bool against = runs_along(soup[triangles[0]], e) == runs_along(soup[triangles[1]], e);
@@ -146,9 +149,9 @@ std::vector<Corners> agreeing(const std::vector<Corners>& soup, const Around& ar
   return result;
 }
 
-/// Integer winding numbers at random points among the triangles. Each of n solid angles is off by some 1e-15 unless the
-/// point is close to its plane, which 20 points at random are not; the winding numbers of an open mesh are integers
-/// almost nowhere.
+/// Returns whether winding numbers at random points among the triangles are integers. Each of n solid angles is off by
+/// about 1e-15 unless the point is close to the triangle's plane, which 20 random points are not; winding numbers of an
+/// open mesh are integers almost nowhere.
 bool integer_windings(const std::vector<Corners>& soup) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> anywhere(-1, 9);
@@ -178,7 +181,7 @@ double winding_number(const std::vector<Corners>& soup, const glm::dvec3& q) {
 Counts count(const std::vector<Corners>& all) {
   Counts counts;
   std::set<Point> vertices;
-  std::vector<Corners> soup;  // without those that repeat a vertex
+  std::vector<Corners> soup;  // without triangles that repeat a vertex
   for (const Corners& t : all) {
     vertices.insert(t.begin(), t.end());
     if (repeats(t) || on_line(t[0], t[1], t[2])) ++counts.zero_area_triangles;

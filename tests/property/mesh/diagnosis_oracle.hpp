@@ -8,8 +8,9 @@
 #include <set>
 #include <vector>
 
-/// mesh/diagnosis/diagnosis.hpp once more, directly from its definitions, in time quadratic or worse. For soups whose
-/// coordinates are small integers: all arithmetic that decides is in integers, except for the winding numbers.
+/// A second version of mesh/diagnosis/diagnosis.hpp, written directly from its definitions, in quadratic time or worse.
+/// For soups whose coordinates are small integers: all arithmetic that decides is in integers, except for the winding
+/// numbers.
 namespace penumbra::mesh::oracle {
 
 struct Point {
@@ -33,11 +34,11 @@ Counts count(const std::vector<Corners>& soup);
 Counts counts_of(const Diagnosis& diagnosis);
 std::ostream& operator<<(std::ostream& out, const Counts& counts);
 
-/// The sum of the signed solid angles of the triangles, over 4π (van Oosterom, Strackee 1983).
+/// Returns the sum of the signed solid angles of the triangles, divided by 4π (van Oosterom, Strackee 1983).
 double winding_number(const std::vector<Corners>& soup, const glm::dvec3& q);
 
-/// Counts self-intersections by exact constructions: what the triangles share, and whether that is part of a vertex or
-/// edge of both.
+/// Counts self-intersections by exact constructions: finds the points that two triangles share, and whether they are
+/// part of a vertex or edge of both.
 std::uint64_t count_self_intersections(const std::vector<Corners>& soup);
 
 }  // namespace penumbra::mesh::oracle

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The diagnosis of random lattice soups against the definitions applied by brute force, and what it must not depend on.
+// Compares the diagnosis of random lattice soups with the definitions applied by brute force, and tests that it does
+// not depend on order, winding or numbering.
 
 #include "tests/property/mesh/diagnosis_oracle.hpp"
 
@@ -46,7 +47,8 @@ class Soups : public testing::TestWithParam<std::uint32_t> {
     return soup;
   }
 
-  /// Sums of tetrahedra, all closed as wound, some inside out: edges split where the lattice allows, on one side only.
+  /// Returns sums of tetrahedra, closed as wound, some inside out. Some edges are split, if their middle is on the
+  /// lattice, for one of their triangles only.
   std::vector<Corners> closed_soup(int tetrahedra, int splits) {
     std::vector<Corners> soup;
     for (int i = 0; i < tetrahedra; ++i) {
@@ -62,12 +64,12 @@ class Soups : public testing::TestWithParam<std::uint32_t> {
       const Point middle = {(a.x + b.x) / 2, (a.y + b.y) / 2, (a.z + b.z) / 2};
       soup[t] = {a, middle, c};
       soup.push_back({middle, b, c});
-      if (below(3) == 0) soup.push_back({a, b, middle});  // without area: joins the halves to the edge
+      if (below(3) == 0) soup.push_back({a, b, middle});  // a triangle without area, which joins the halves to the edge
     }
     return soup;
   }
 
-  /// Turns about a third of the triangles.
+  /// Turns over about a third of the triangles.
   std::vector<Corners> wound_at_random(std::vector<Corners> soup) {
     for (Corners& t : soup) {
       if (below(3) == 0) std::swap(t[1], t[2]);
@@ -104,7 +106,7 @@ TEST_P(Soups, ATriangleTooFewOpensThem) {
 }
 
 TEST_P(Soups, ManyTrianglesAtAVertexFollowTheDefinition) {
-  if (GetParam() % 8 != 0) return;  // slow by exact constructions: a few seeds
+  if (GetParam() % 8 != 0) return;  // only a few seeds, as exact constructions are slow
   std::vector<Corners> soup = random_soup(20, 2);
   const Point hub = lattice_point(2), other = lattice_point(2);
   for (int i = 0; i < 90; ++i) soup.push_back({i % 4 == 0 ? other : hub, lattice_point(4), lattice_point(4)});
@@ -113,8 +115,9 @@ TEST_P(Soups, ManyTrianglesAtAVertexFollowTheDefinition) {
 }
 
 TEST_P(Soups, CrowdedLinesFollowTheDefinition) {
-  if (GetParam() % 8 != 0) return;  // slow: a few seeds
-  // Three lines, two of which cross, with so many vertices that edges are counted by their places on them.
+  if (GetParam() % 8 != 0) return;  // only a few seeds, as this is slow
+  // Three lines, two of which cross, with so many vertices on them that edges are counted by their positions on the
+  // line.
   const auto on_a_line = [&] {
     const std::int64_t at = below(60);
     return std::array{Point{at, 0, 0}, Point{30, at - 30, 0}, Point{at, 2 * at, 7}}[static_cast<std::size_t>(below(3))];
@@ -140,7 +143,7 @@ TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
   const Diagnosis before = diagnosed(soup_of(soup));
   std::ranges::shuffle(soup, random_);
   for (Corners& t : soup) std::rotate(t.begin(), t.begin() + below(3), t.end());
-  TriangleSoup shared = soup_of(soup);  // and now with positions that several triangles use, some of them −0
+  TriangleSoup shared = soup_of(soup);  // the same soup with positions that several triangles share, some of them −0
   for (Triangle& t : shared.triangles) {
     for (std::uint32_t& corner : t) {
       if (below(2) == 0) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact predicates against GMP's rationals: on a tiny lattice, where zeros are the rule, on doubles of every exponent,
-// and a few ulp from degenerate.
+// Exact predicates compared with GMP's rationals: on a tiny lattice, where zeros are the rule, on doubles of every
+// exponent, and a few ulps from degenerate.
 
 #include "mesh/predicates.hpp"
 
@@ -77,7 +77,8 @@ class Predicates : public testing::TestWithParam<std::uint32_t> {
   double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
   int number(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
 
-  /// A random mantissa and sign at an exponent from `low` to `high`; beyond the range of doubles: subnormal, or 0.
+  /// Returns a random mantissa and sign with an exponent from `low` to `high`; below the range of doubles the result is
+  /// subnormal or 0.
   double wild(int low, int high) {
     const double value = std::ldexp(between(1, 2), number(low, high));
     return number(0, 1) == 0 ? value : -value;
@@ -96,7 +97,7 @@ TEST_P(Predicates, Lattice) {
 }
 
 TEST_P(Predicates, LatticesOfEveryScale) {
-  // Ties where products of three coordinates leave the range of doubles, below and above.
+  // Ties whose products of three coordinates leave the range of doubles, at its lower and upper end.
   for (const int exponent : {-1074, -1060, -700, -360, -150, 126, 340, 700, 1020}) {
     Tally tally;
     const double unit = std::ldexp(1.0, exponent);
@@ -140,7 +141,7 @@ TEST_P(Predicates, NearlyCoplanarAndNearlyCollinear) {
       500, tally);
   expect_exact(
       [&] {
-        const double t = std::round(between(-64, 64)) / 16;  // t, 3 t and 5 t exact: collinear up to the ulp
+        const double t = std::round(between(-64, 64)) / 16;  // t, 3 t and 5 t are exact: collinear up to the ulp
         return glm::dvec3(t, ulp_off(3 * t), ulp_off(5 * t));
       },
       500, tally);
@@ -183,7 +184,7 @@ TEST_P(Predicates, CoplanarIsAllThreeOnThePlane) {
   EXPECT_GT(yes, 10);
 }
 
-/// The last product takes away what the others add up to, except for rounding.
+/// The last product cancels the sum of the others, except for rounding.
 TEST_P(Predicates, SumsOfProductsThatNearlyCancel) {
   std::mt19937 random(GetParam());
   std::uniform_real_distribution<double> real(-1, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Signed multiplicities and silhouettes: the definition in integers on lattice soups, what must not change them, closed
-// forms, and the conservative list of edges that can be silhouettes.
+// Tests signed multiplicities and silhouettes: against the definition in integers on lattice soups, against closed
+// forms, that certain changes of the mesh do not matter; and the conservative list of edges that can be silhouettes.
 
 #include "mesh/shapes/shapes.hpp"
 #include "mesh/silhouettes.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 using Place = std::array<int, 3>;
 
-/// A soup on a lattice of integers: what follows from it can be computed in integers.
+/// A soup on a lattice of integers, so that expected results can be computed in integers.
 struct LatticeSoup {
   std::vector<Place> places;
   std::vector<Triangle> triangles;
@@ -60,9 +60,10 @@ int sign_of_volume(const Place& a, const Place& b, const Place& c, const Place& 
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
-using Multiplicities = std::map<std::pair<Place, Place>, int>;  // by end points, the lesser first; never 0
+using Multiplicities =
+    std::map<std::pair<Place, Place>, int>;  // keyed by end points, the lesser one first; values are never 0
 
-/// The definition: a triangle with apex c gives the edge (a, b) the sign of (a, b, c; p).
+/// Computes the multiplicities by definition: a triangle with apex c gives the edge (a, b) the sign of (a, b, c; p).
 Multiplicities by_definition(const LatticeSoup& soup, const Place& p) {
   Multiplicities k;
   for (const Triangle& t : soup.triangles) {
@@ -102,7 +103,8 @@ RC_GTEST_PROP(SignedMultiplicity, IsItsDefinition, ()) {
 RC_GTEST_PROP(SignedMultiplicity, DoesNotDependOnWindingOrderOrVertexNumbers, ()) {
   const LatticeSoup soup = draw_soup();
   const Place p = draw_place();
-  LatticeSoup other;  // every corner a vertex of its own, triangles in reverse, some wound the other way, all rotated
+  LatticeSoup
+      other;  // every corner a separate vertex, triangles in reverse order, some wound the other way, all rotated
   for (auto t = soup.triangles.rbegin(); t != soup.triangles.rend(); ++t) {
     const auto first = static_cast<std::uint32_t>(other.places.size());
     const std::size_t turn = static_cast<std::size_t>(draw(0, 2));
@@ -130,7 +132,7 @@ RC_GTEST_PROP(SignedMultiplicity, WhatEntersAVertexLeavesIt, ()) {
 }
 
 RC_GTEST_PROP(SignedMultiplicity, OppositeFacesOnlyAddUp, ()) {
-  // A triangle and its mirror image in winding are seen the same way: twice the one.
+  // A triangle and its copy wound the other way count alike: each multiplicity doubles.
   LatticeSoup soup = draw_soup();
   const Place p = draw_place();
   Multiplicities twice = computed(soup, p);
@@ -143,8 +145,8 @@ RC_GTEST_PROP(SignedMultiplicity, OppositeFacesOnlyAddUp, ()) {
   RC_ASSERT(computed(soup, p) == twice);
 }
 
-/// Silhouettes from points around and inside a closed surface have only 0 and ±2; they are loops, since as much arrives
-/// at each vertex as leaves it; there are none where all triangles show the same side.
+/// Around and inside a closed surface, multiplicities are only 0 and ±2. Silhouettes are loops: as many edges arrive at
+/// each vertex as leave it. There are none if all triangles show the same side.
 TEST(Silhouettes, OfClosedSurfacesAreTwofold) {
   for (const TriangleSoup& soup :
        {make_sphere({}), make_torus({}), make_blob({.subdivisions = 3}), make_box({0, 0, 0}, {1, 2, 3})}) {
@@ -179,7 +181,8 @@ TEST(Silhouettes, OfAnOpenSurfaceAreItsBorder) {
 }
 
 TEST(Silhouettes, BooksOfPagesCountTheirPages) {
-  // n triangles around one edge, all on p's side of it except `behind` of them: k = n − 2 · behind.
+  // n triangles around one edge, `behind` of them on its far side as seen from p, the others on p's side: k = n − 2 ·
+  // behind.
   for (int pages = 1; pages <= 7; ++pages) {
     for (int behind = 0; behind <= pages; ++behind) {
       LatticeSoup soup;
@@ -196,7 +199,7 @@ TEST(Silhouettes, BooksOfPagesCountTheirPages) {
   }
 }
 
-/// A point of the corners' hull: weights are multiples of 1/8, so the coordinates are exact.
+/// Returns a point in the convex hull of the corners: weights are multiples of 1/8, so the coordinates are exact.
 glm::dvec3 draw_in_hull(const std::vector<glm::dvec3>& corners) {
   glm::dvec3 sum(0);
   for (int i = 0; i < 8; ++i) sum += corners[static_cast<std::size_t>(draw(0, static_cast<int>(corners.size()) - 1))];
@@ -234,7 +237,8 @@ RC_GTEST_PROP(PossibleSilhouettes, FromOnePointAreItsSilhouettes, ()) {
 }
 
 RC_GTEST_PROP(PossibleSilhouettes, AreTightWhereNoTriangleIsSeenFromBothSides, ()) {
-  // An edge whose triangles each show the whole hull one side is in the list iff it is a silhouette from each point.
+  // If each of an edge's triangles shows the whole hull one side, the edge is in the list iff it is a silhouette from
+  // each point.
   const LatticeSoup soup = draw_soup();
   const EdgeGraph graph = build_edge_graph(soup.view());
   const std::vector<glm::dvec3> corners = draw_corners(4);
@@ -252,7 +256,7 @@ RC_GTEST_PROP(PossibleSilhouettes, AreTightWhereNoTriangleIsSeenFromBothSides, (
 }
 
 TEST(PossibleSilhouettes, OfAFlatGridAreItsBorder) {
-  // A box of receivers on both sides of the grid: every triangle is mixed, and inner edges still cancel.
+  // Receivers on both sides of the grid: every triangle is seen from both sides, and inner edges still cancel.
   const TriangleSoup soup = make_grid({.half_u = {4, 0, 0}, .half_v = {0, 0, -4}, .cells_u = 8, .cells_v = 8});
   const MeshView view{soup.positions, soup.triangles};
   const EdgeGraph graph = build_edge_graph(view);
@@ -266,7 +270,8 @@ TEST(PossibleSilhouettes, OfAFlatGridAreItsBorder) {
 }
 
 TEST(PossibleSilhouettes, PagesOfAFlatBookCancelInPairs) {
-  // Pages around one edge, all in one plane: as many left as right cancel from everywhere; one page more does not.
+  // Pages around one edge, all in one plane: as many to the left as to the right cancel as seen from any point; with
+  // one page more they do not.
   LatticeSoup soup;
   soup.places = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {2, 0, 5}, {-1, 0, 0}, {-3, 0, 2}, {0, 1, 0}};
   soup.triangles = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {0, 1, 5}};
@@ -281,13 +286,13 @@ TEST(PossibleSilhouettes, PagesOfAFlatBookCancelInPairs) {
   EXPECT_FALSE(holds_the_spine());
   soup.triangles.push_back({0, 1, 2});
   EXPECT_TRUE(holds_the_spine());
-  soup.triangles.back() = {0, 1, 6};  // off the plane
+  soup.triangles.back() = {0, 1, 6};  // a page off the plane
   EXPECT_TRUE(holds_the_spine());
 }
 
 TEST(PossibleSilhouettes, OfABlobFromASmallLightAreFew) {
   // Nearly all triangles show one side to a light much smaller than its distance: the list is little longer than the
-  // silhouette from its centre, and far from all edges.
+  // silhouette from its centre, and much shorter than the list of all edges.
   const TriangleSoup soup = make_blob({.subdivisions = 4});
   const MeshView view{soup.positions, soup.triangles};
   const EdgeGraph graph = build_edge_graph(view);

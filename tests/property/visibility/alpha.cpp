@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what surfaces that let light through do to pairs, against docs/definitions.md evaluated literally: crossing
-// points, texture coordinates and texels in GMP's rationals, on lattices where coincidences are the rule; and closed
-// forms.
+// Tests the effect of surfaces that let light through on pairs: against docs/definitions.md evaluated literally, with
+// crossing points, texture coordinates and texels in GMP's rationals, on lattices where coincidences are the rule; and
+// against closed forms.
 #include "visibility/alpha/alpha_filter.hpp"
 
 #include "tests/property/literal_truth.hpp"
@@ -22,7 +22,7 @@ using namespace tests::rational;
 using scenes::Alpha;
 using scenes::PictureUse;
 
-/// Far below what moves a lattice point's sign or texel.
+/// Far too small to change a lattice point's sign or texel.
 const Rational kTiny(1, mpz_class("1000000000000000000000000000000"));
 
 mpz_class floor_of(const Rational& x) {
@@ -31,8 +31,8 @@ mpz_class floor_of(const Rational& x) {
   return result;
 }
 
-/// The texel of a coordinate, by counting: repeat and mirror fold the whole number, clamp stops at the ends. Nothing
-/// on a border between two, where rounding may say either.
+/// Returns the texel of a coordinate, by counting: repeat and mirror fold the integer, clamp stops at the ends. Returns
+/// nullopt on a border between texels, where rounding may choose either.
 std::optional<std::size_t> literal_texel(const Rational& place, std::uint32_t size, PictureUse::Wrap wrap) {
   const Rational at = place * size;
   if (floor_of(at) == at) return std::nullopt;
@@ -46,7 +46,7 @@ std::optional<std::size_t> literal_texel(const Rational& place, std::uint32_t si
   return static_cast<std::size_t>(texel);
 }
 
-/// A scene of a lattice's triangles under a picture, with the truth of its pairs.
+/// A scene of lattice triangles with a picture, with the truth of its pairs.
 struct Leaves {
   scenes::Scene scene;
   std::mt19937 random;
@@ -80,7 +80,7 @@ struct Leaves {
   }
 };
 
-/// Returns whether there is a texel where the segment meets the triangle's plane; nullopt on a border.
+/// Returns whether the texel is solid where the segment meets the triangle's plane; nullopt on a border.
 std::optional<bool> literal_is_there(const scenes::Scene& scene, const SceneFloats& floats, std::uint32_t triangle,
                                      const Vector& p, const Vector& direction) {
   const auto corners = floats.corners(triangle);
@@ -104,7 +104,7 @@ std::optional<bool> literal_is_there(const scenes::Scene& scene, const SceneFloa
   return picture.texels[*row * picture.width + *column][3] >= 128;
 }
 
-/// The seed, and whether the light is a sun: of those a pair is a ray without end.
+/// The seed, and whether the light is a sun. For a sun, a pair is a ray without end.
 class AlphaOnLattice : public testing::TestWithParam<std::tuple<std::uint32_t, bool>> {};
 
 TEST_P(AlphaOnLattice, TexelsDecide) {
@@ -125,7 +125,7 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
     }
     samples.width = static_cast<std::uint32_t>(samples.size());
     samples.height = 1;
-    // Answer of a method that knows nothing of leaves.
+    // The answer of a method that ignores alpha: all triangles are solid.
     SceneFloats solids = floats;
     solids.alphas.casters.clear();
     std::vector<std::uint32_t> masks(samples.size());
@@ -181,7 +181,7 @@ struct UnderPanes {
     scenes::Object& pane = tests::add_quad(scene, center + glm::dvec3(0, height, 0), {half, 0, 0}, {0, 0, -half});
     pane.alpha = {Alpha::Mode::blend, alpha, 0.5};
   }
-  /// V at the point below the light's middle, if nothing that stops all light is there.
+  /// Returns V at the point below the light's middle, if no opaque surface is in between.
   [[nodiscard]] float share(const glm::vec3& p = glm::vec3(0)) const {
     const SceneFloats floats = make_scene_floats(scene);
     const Light light = make_light(scene, 0, floats.origin, {256, 0, 0, SamplePattern::rows, 0});
@@ -210,7 +210,7 @@ TEST(AlphaFilters, PanesMultiply) {
   EXPECT_EQ(one.share(), 0) << "an alpha of 1 lets nothing through, and is no bit's business all the same";
 }
 
-/// A pane that ends below the middle of the light at half its height hides, seen from below, half of it.
+/// A pane at half the light's height that ends below the light's middle covers, as seen from below, half of the light.
 TEST(AlphaFilters, APaneMayHideAPart) {
   UnderPanes half;
   half.add(2, 0.6, {4, 0, 0}, 4);
@@ -225,8 +225,8 @@ TEST(AlphaFilters, VerticesAndFactorsMultiply) {
   EXPECT_FLOAT_EQ(panes.share(), 0.75f);
 }
 
-/// Casters are looked for in the pyramid from p to the light samples that it sees. Of thousands of specks, on its sides
-/// too, none is forgotten.
+/// Casters are searched in the pyramid from p to the light samples that it sees. None of thousands of specks is missed,
+/// not even those on the pyramid's sides.
 TEST(AlphaFilters, FindEverySpeck) {
   for (const bool under_a_sun : {false, true}) {
     std::mt19937 random(7);
@@ -272,8 +272,8 @@ TEST(AlphaFilters, FindEverySpeck) {
   }
 }
 
-/// p is rounded, so that its own surface may be between it and the light: it hides nothing all the same, nor does what
-/// lies in its plane.
+/// p is rounded, so that its own surface may be between p and the light. Neither that surface nor others in its plane
+/// may hide anything.
 TEST(AlphaFilters, ASurfaceDoesNotHideItself) {
   scenes::Scene scene;
   for (const double x : {-1.0, 1.0}) {
@@ -299,7 +299,8 @@ TEST(AlphaFilters, ASurfaceDoesNotHideItself) {
   EXPECT_EQ(masks, std::vector<std::uint32_t>(samples.size(), 0xffffU));
 }
 
-/// One value at all corners is that value anywhere, to the last digit, though vertices elsewhere have others.
+/// If all corners of a triangle have the same value, it has that value everywhere, to the last digit, though other
+/// vertices differ.
 TEST(AlphaFilters, WhatCornersShareHasNoNoise) {
   for (const float vertex : {1.0F, 0.75F}) {
     scenes::Scene scene;
@@ -309,7 +310,8 @@ TEST(AlphaFilters, WhatCornersShareHasNoNoise) {
     scene.pictures.push_back({"checks", 2, 1, {{0, 0, 0, 255}, {}}});
     scene.lights.push_back(tests::ceiling_light(4, 0.5));
     for (std::size_t i = 0; i < 4; ++i) {
-      scene.looks.places.emplace_back(1, 0.5);  // between two texels: the first, by repetition
+      scene.looks.places.emplace_back(
+          1, 0.5);  // between two texels, of which the first one is solid because of repetition
       scene.looks.colors.emplace_back(1, 1, 1, vertex);
     }
     tests::add_quad(scene, {9, 0, 0}, {1, 0, 0}, {0, 0, 1});

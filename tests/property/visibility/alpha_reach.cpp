@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests where surfaces that let light through may take part: specks that reach into the pyramid from p to a light by a
-// ten-thousandth of it, or stay out of it by as much; and light samples that are met, which must all be foreseen.
+// Tests the search for surfaces that let light through and may take part: specks that reach into the pyramid from p to
+// a light by a ten-thousandth of it, or stay outside by as much. All specks met on the way to a light sample must have
+// been found.
 #include "visibility/alpha/alpha_reach.hpp"
 
 #include "tests/unit/visibility/scenes.hpp"
@@ -41,7 +42,7 @@ struct Floor {
     samples.width = width;
     samples.height = static_cast<std::uint32_t>(points.size()) / width;
   }
-  /// Returns what is reached with these specks alone.
+  /// Returns the result of the search with only these specks in the scene.
   [[nodiscard]] std::vector<std::uint8_t> reached(const std::vector<tests::Corners>& specks) const {
     scenes::Scene with = scene;
     tests::add_object(with, "specks", specks).alpha = {Alpha::Mode::blend, 0.5, 0.5};
@@ -54,9 +55,9 @@ struct Floor {
 
 struct Outline {
   scenes::LightShape shape;
-  glm::dvec3 middle;                // of the light, or along its directions
-  std::vector<glm::dvec3> corners;  // of a convex outline
-  bool exact = true;                // it is the light's, not around it
+  glm::dvec3 middle;                // of the light, or of its directions
+  std::vector<glm::dvec3> corners;  // corners of a convex outline
+  bool exact = true;                // whether the outline is that of the light itself, and not one around it
 };
 
 std::vector<Outline> outlines() {
@@ -88,7 +89,7 @@ TEST(AlphaReaches, SpecksThatReachIntoThePyramidByATenThousandth) {
       const glm::dvec3 &a = light.corners[i % light.corners.size()], &b = light.corners[(i + 1) % light.corners.size()];
       const glm::dvec3 edge = glm::mix(a, b, real(random));
       const double t = (0.3 + 0.7 * real(random)) * (std::holds_alternative<scenes::Sun>(light.shape) ? 6.0 : 1.0);
-      // Away from the pyramid: at right angles to its side, with something along it.
+      // Away from the pyramid: perpendicular to its side, with a part along the side.
       glm::dvec3 away = glm::normalize(glm::cross(a, b));
       if (glm::dot(away, light.middle) > 0) away = -away;
       const glm::dvec3 along = glm::normalize(b - a);
@@ -106,7 +107,7 @@ TEST(AlphaReaches, SpecksThatReachIntoThePyramidByATenThousandth) {
   }
 }
 
-/// Specks between p and the light count: neither those below the floor, nor behind the light, nor in p's plane.
+/// Specks between p and the light count, but none below the floor, behind the light, or in p's plane.
 TEST(AlphaReaches, FromTheFloorToTheLight) {
   const auto at = [](double height) {
     return tests::Corners{glm::dvec3(-1, height, -1), glm::dvec3(1, height, -1), glm::dvec3(0, height, 1)};
@@ -125,12 +126,12 @@ TEST(AlphaReaches, FromTheFloorToTheLight) {
     for (const double height : {0.001, 1.0, 0.9999 * top}) EXPECT_TRUE(floor.reached_by(at(height))) << height;
     EXPECT_EQ(floor.reached_by(at(1.0001 * top)), endless);
     EXPECT_EQ(floor.reached_by(at(100)), endless);
-    // The part above the floor counts of a triangle through the floor.
+    // Of a triangle through the floor, the part above the floor counts.
     EXPECT_TRUE(floor.reached_by({glm::dvec3(0, 0.1, 0), glm::dvec3(1, -9, 1), glm::dvec3(-1, -9, 1)}));
   }
 }
 
-/// Everything that a light sample meets was foreseen, in any pixel of any block.
+/// Every speck that is met on the way to a light sample was found, in any pixel of any block.
 TEST(AlphaReaches, WhateverALightSampleMeets) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -143,7 +144,7 @@ TEST(AlphaReaches, WhateverALightSampleMeets) {
     floor.look_at(points, 50);
     std::size_t met = 0, foreseen = 0;
     for (int round = 0; round < 24; ++round) {
-      // Somewhere in between, or close to some view sample.
+      // Specks are somewhere in between, or close to some view sample.
       const bool low = round % 2 == 0;
       const glm::dvec3 middle = low ? glm::dvec3(2.5, 0.02, 2) * point() : glm::dvec3(0, 2, 0) + 1.5 * point();
       const double size = low ? 0.15 : 0.4;

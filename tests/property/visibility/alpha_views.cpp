@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces that let light through, in what pixels see: behind holes, and panes before it.
+// Tests view samples of scenes with surfaces that let light through: seen through holes, and with translucent panes in
+// front.
 #include "visibility/alpha/panes.hpp"
 
 #include "tests/unit/visibility/scenes.hpp"
@@ -18,7 +19,7 @@ namespace {
 using scenes::Alpha;
 using scenes::PictureUse;
 
-/// A card of three by two texels, half of them holes, before a wall; and panes before both.
+/// A card of three by two texels, half of them holes, in front of a wall.
 struct Card {
   scenes::Scene scene;
   Card() {
@@ -58,11 +59,12 @@ TEST(ViewsThroughHoles, AreOfWhatIsBehind) {
     EXPECT_EQ(look_through(floats, view, solid).triangle, truth.triangle);
     std::array<int, 4> seen_on{};
     for (std::size_t i = 0; i < truth.size(); ++i) {
-      // The texel that the pixel's ray meets, of the card in the plane z = 0.
+      // The texel of the card, in the plane z = 0, that the pixel's ray meets.
       const ViewRay ray = view.ray(static_cast<std::uint32_t>(i % 37), static_cast<std::uint32_t>(i / 37));
       const glm::dvec3 at =
           ray.start + floats.origin - (ray.start.z + floats.origin.z) / ray.direction.z * ray.direction;
-      if (std::abs(at.x) >= 1 || std::abs(at.y) >= 1 || std::abs(at.y) < 1e-9) continue;  // or between two texels
+      if (std::abs(at.x) >= 1 || std::abs(at.y) >= 1 || std::abs(at.y) < 1e-9)
+        continue;  // off the card, or between two texels
       const int column = static_cast<int>((at.x + 1) / 2 * 3), row = static_cast<int>((1 - at.y) / 2 * 2);
       const bool is_there = (row == 0 && column != 1) || (row == 1 && column == 1);
       EXPECT_EQ(truth.triangle[i] >= 2, is_there) << at.x << " " << at.y;
@@ -73,8 +75,8 @@ TEST(ViewsThroughHoles, AreOfWhatIsBehind) {
   }
 }
 
-/// Only pixels that may be behind a hole are looked at again. None of them may be forgotten, wherever a small card with
-/// holes and everything else are: in the picture, beside the eye or behind it.
+/// Only pixels that may look through a hole are examined again. None of them may be missed, wherever the card with
+/// holes and the other objects are: in the picture, next to the eye or behind it.
 TEST(ViewsThroughHoles, AreFoundWhereverTheyAre) {
   std::size_t looked_through = 0;
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
@@ -108,7 +110,7 @@ TEST(ViewsThroughHoles, AreFoundWhereverTheyAre) {
   EXPECT_GT(looked_through, 30u);
 }
 
-/// The rays of an orthographic camera are parallel: p is where its pixel is, whatever the distance.
+/// The rays of an orthographic camera are parallel: p is at its pixel's place, whatever the distance.
 TEST(OrthographicViews, KeepDistancesAcross) {
   Card card;
   scenes::Camera seen = tests::camera({0, 0, 7}, {0, 0, 0});
@@ -137,7 +139,7 @@ TEST(PaneLayers, AreBeforeWhatIsSeenAndInOrder) {
   add_pane(-4, 0.9);  // behind the wall
   add_pane(1, 0.25);
   add_pane(-1, 0.5);  // behind the card
-  add_pane(2, 0);     // nothing
+  add_pane(2, 0);     // an alpha of 0: no pane at all
   const SceneFloats floats = make_scene_floats(card.scene);
   const PinholeCamera view = make_camera(tests::camera({0, 0, 6}, {0, 0, 0}, 30), floats.origin, 21, 21);
   const ViewSamples seen = brute_force_view_samples(floats, view);
@@ -154,8 +156,8 @@ TEST(PaneLayers, AreBeforeWhatIsSeenAndInOrder) {
   }
 }
 
-/// Rays through what triangles have in common meet one surface, whichever objects these are of; faces that coincide are
-/// two surfaces.
+/// A ray through a common edge or corner of several triangles meets one surface, even if they belong to different
+/// objects; coincident faces are two surfaces.
 TEST(PaneLayers, SeamsAreOneSurface) {
   const auto quads = [](std::initializer_list<glm::dvec3> centers) {
     scenes::Scene scene;
@@ -167,7 +169,8 @@ TEST(PaneLayers, SeamsAreOneSurface) {
   };
   const auto depths = [](const scenes::Scene& scene) {
     const SceneFloats floats = make_scene_floats(scene);
-    // Odd: the middle's rays pass through the seam x = 0, the diagonals of quads, and the corner at (0, 0).
+    // Odd sizes: rays through the picture's middle pass through the seam x = 0, the diagonals of quads, and the corner
+    // at (0, 0).
     const PinholeCamera view = make_camera(tests::camera({0, 0, 6}, {0, 0, 0}, 30), floats.origin, 21, 21);
     const ViewSamples seen = brute_force_view_samples(floats, view);
     const Panes panes(floats, seen);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what must not change anything: the order of triangles, their winding and first vertex, doubled vertices; and
-// what must change nothing but the unit: a scale by a power of two.
+// Tests changes that must not matter: the order of triangles, their winding and first vertex, doubled vertices; and
+// scaling by a power of two, which must change nothing but the unit.
 
 #include "tests/unit/mesh/shuffled.hpp"
 #include "tests/unit/visibility/scenes.hpp"
@@ -13,7 +13,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// A random soup over a floor, with pairs of triangles that share edges, doubles and triangles seen edge-on.
+/// A random soup over a floor, with pairs of triangles that share edges, doubled triangles and triangles seen edge-on.
 scenes::Scene random_scene(std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> real(-1.5, 1.5);
@@ -85,7 +85,7 @@ TEST_P(Invariance, ScaleByAPowerOfTwo) {
 }
 
 TEST_P(Invariance, NoCracksBetweenNeighbours) {
-  // A fan that fills the picture: every ray is covered, whatever edge or vertex it passes through.
+  // A fan that fills the picture: every ray must be covered, whatever edge or vertex it passes through.
   std::mt19937 random(GetParam());
   std::uniform_int_distribution<int> lattice(-3, 3);
   const glm::dvec3 middle(lattice(random) / 8.0, lattice(random) / 8.0, lattice(random) / 8.0);
@@ -97,7 +97,7 @@ TEST_P(Invariance, NoCracksBetweenNeighbours) {
   tests::add_object(scene, "fan", fan);
   scene.lights.push_back(tests::ceiling_light(5, 1));
   scene.cameras.push_back(tests::camera({0, 0, 4}, {0, 0, 0}));
-  const tests::Stage setup(scene, 33, 33);  // odd: pixel centres lie on the diagonals
+  const tests::Stage setup(scene, 33, 33);  // odd sizes: pixel centres lie on the diagonals
   EXPECT_EQ(std::count(setup.samples.triangle.begin(), setup.samples.triangle.end(), ViewSamples::kBackground), 0);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole pairs of spheres and suns against the sentence of docs/definitions.md, in rationals: soups on a tiny lattice,
-// view samples on their corners and edges and in the light.
+// Tests whole pairs of spheres and suns against the sentence of docs/definitions.md, in rationals: soups on a tiny
+// lattice, with view samples on corners and edges and inside the light.
 
 #include "tests/property/literal_truth.hpp"
 #include "tests/unit/visibility/scenes.hpp"
@@ -20,7 +20,7 @@ namespace {
 using namespace tests::rational;
 using tests::ExactTriangle;
 
-/// Light points are floats of 24 bits: far below every determinant of these and lattice points that is not zero.
+/// Light points are floats of 24 bits: this is far below every nonzero determinant of them and lattice points.
 const Rational kInfinitesimal(1, mpz_class("1" + std::string(90, '0')));
 
 class Numbers {
@@ -36,7 +36,8 @@ class Numbers {
   std::mt19937 random_;
 };
 
-/// Condition (2), the way to l and its end's height over a plane, and the axes of ties: literally, by kind.
+/// For one kind of light, taken literally: condition (2) of docs/definitions.md, and the axes along which ties are
+/// moved.
 struct Reading {
   bool in_front = true;
   Vector u, v;
@@ -77,7 +78,7 @@ PairOutcome literal_outcome(const SceneFloats& floats, const ViewSamples& sample
   const Reading reading = read(light, p);
   if (!reading.in_front) return PairOutcome::behind;
   const ExactTriangle own(floats.corners(static_cast<std::uint32_t>(samples.triangle[pixel])));
-  const bool ends = !light.sun;  // the way of a sun is l itself
+  const bool ends = !light.sun;  // a sun's light point is itself a direction
   const Rational above = ends ? own.height(exact(l)) : dot(own.normal, exact(l));
   if (above * samples.facing[pixel] <= 0) return PairOutcome::horizon;
   const Vector straight = ends ? exact(l) - exact(p) : exact(l);
@@ -150,7 +151,7 @@ TEST_P(PairKinds, Suns) {
   EXPECT_GT(zeros, 40);
 }
 
-/// The tree of boxes leaves out no triangle that a ray meets.
+/// The tree of boxes skips no triangle that a ray meets.
 TEST_P(PairKinds, SunsAlongTheTree) {
   Numbers numbers(GetParam() + 200);
   int differing = 0, visible = 0, pairs = 0;
@@ -187,7 +188,7 @@ TEST_P(PairKinds, SunsAlongTheTree) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, PairKinds, testing::Range(0u, 6u));
 
-/// A triangle through which p is by less than double can tell: behind p it hides no sun, before p it does.
+/// p is closer to a triangle than double can tell: behind p it hides no sun, in front of p it does.
 TEST(PairKindsByAHair, WhatIsBehindPHidesNoSun) {
   scenes::Scene scene;
   scene.lights.emplace_back();

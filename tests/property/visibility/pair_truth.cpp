@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact pair decision against the sentence of docs/definitions.md, evaluated literally in GMP's rationals: the
-// light point is moved by ε·u + ε²·v with an ε small enough for the lattice, the crossing point with the triangle's
-// plane is computed, and its barycentric coordinates say whether it is on the triangle. Coordinates come from a tiny
+// Tests the exact pair decision against the sentence of docs/definitions.md, evaluated literally in GMP's rationals:
+// the light point is moved by ε·u + ε²·v with an ε small enough for the lattice, the crossing point with the triangle's
+// plane is computed, and its barycentric coordinates decide whether it is on the triangle. Coordinates come from a tiny
 // lattice, so that edges through the segment, points on planes, doubled and zero-area triangles are the normal case.
 
 #include "visibility/pair_truth.hpp"
@@ -21,7 +21,7 @@ namespace {
 using namespace tests::rational;
 using tests::ExactTriangle;
 
-/// Lattice coordinates are multiples of 2⁻⁴ below 2⁴: no determinant that is not zero is closer to it than 2⁻¹².
+/// Lattice coordinates are multiples of 2⁻⁴ below 2⁴: no nonzero determinant is closer to zero than 2⁻¹².
 const Rational kEpsilon(1, mpz_class("1000000000000000000000000000000"));
 
 bool meets(const glm::vec3& p, const Vector& l, const std::array<glm::vec3, 3>& corners, const Light& light,
@@ -45,7 +45,7 @@ class Lattice {
   int number(int lowest, int highest) { return std::uniform_int_distribution<int>(lowest, highest)(random_); }
   glm::vec3 point() { return {number(-2, 2), number(-2, 2), number(-2, 2)}; }
 
-  /// A rectangle light whose frame is on the lattice and its 2 × 2 samples on one of half the spacing.
+  /// A rectangle light whose frame is on the lattice, with 2 × 2 samples on a lattice of half the spacing.
   Light light() {
     scenes::Scene scene;
     for (;;) {
@@ -58,7 +58,7 @@ class Lattice {
     return make_light(scene, 0, glm::dvec3(0), {0, 2, 2, SamplePattern::grid, 0});
   }
 
-  /// A light sample, or the light's centre: lattice points make more zeros.
+  /// A light sample, or the light's centre: lattice points give more zeros.
   glm::vec3 on(const Light& light) {
     const auto j = static_cast<std::size_t>(number(0, 7));
     return j < 4 ? light.points[j] : light.center;
@@ -76,7 +76,8 @@ TEST_P(PairTruthOnLattice, SegmentAgainstOneTriangle) {
   for (int round = 0; round < 1500; ++round) {
     const Light light = lattice.light();
     const glm::vec3 p = lattice.point(), l = lattice.on(light);
-    if (on_light_plane(light, p)) continue;  // condition (2) refuses these pairs before any triangle is asked
+    if (on_light_plane(light, p))
+      continue;  // condition (2) of docs/definitions.md excludes these pairs before any triangle is tested
     const std::array<glm::vec3, 3> corners = {lattice.point(), lattice.point(), lattice.point()};
     const Meeting meeting = segment_meets_triangle(p, l, corners, light);
     ASSERT_EQ(meeting.meets, meets(p, l, corners, light, kEpsilon)) << "round " << round;
@@ -94,7 +95,7 @@ TEST_P(PairTruthOnLattice, SegmentAgainstOneTriangle) {
   EXPECT_GT(zeros_met, 5);
 }
 
-/// Points of the light's plane that are no floats: the same definition, for the part of the triangle between p and that
+/// Points of the light's plane that are not floats: the same definition, for the part of a triangle between p and that
 /// plane.
 TEST_P(PairTruthOnLattice, PointsOfTheLightsPlane) {
   Lattice lattice(GetParam() + 700);
@@ -104,7 +105,7 @@ TEST_P(PairTruthOnLattice, PointsOfTheLightsPlane) {
     const glm::vec3 p = lattice.point();
     if (on_light_plane(light, p)) continue;
     const std::array<glm::vec3, 3> corners = {lattice.point(), lattice.point(), lattice.point()};
-    // Eighths, for ties; or numbers with all 53 digits.
+    // Multiples of 1/8, for ties; or numbers with all 53 digits.
     const double unit = round % 2 == 0 ? 0.125 : 0.1234567890123456;
     const glm::dvec2 st(unit * lattice.number(-8, 8), unit * lattice.number(-8, 8));
     const Vector c = exact(light.center), u = exact(light.center_u) - c, v = exact(light.center_v) - c;
@@ -119,8 +120,8 @@ TEST_P(PairTruthOnLattice, PointsOfTheLightsPlane) {
 }
 
 TEST_P(PairTruthOnLattice, ASplitTriangleIsMetExactlyWhenTheWholeIs) {
-  // A point on the triangle splits it into three: the symbolic perturbation must give every segment through the inner
-  // edges or the inner vertex to exactly one of them, or the picture has cracks.
+  // A point on the triangle splits it into three: the symbolic perturbation must assign every segment through an inner
+  // edge or the inner vertex to exactly one of them, or pictures would have cracks.
   Lattice lattice(GetParam() + 500);
   for (int round = 0; round < 800; ++round) {
     const Light light = lattice.light();
@@ -155,7 +156,8 @@ TEST_P(PairTruthOnLattice, WholePairs) {
       const std::array<glm::vec3, 4> places = {a, 0.5f * a + 0.5f * b, 0.25f * a + 0.25f * b + 0.5f * c,
                                                lattice.point()};
       samples.triangle.push_back(static_cast<std::int32_t>(carrier));
-      samples.p.push_back(places[static_cast<std::size_t>(lattice.number(0, 3))]);  // rounding may leave the carrier
+      samples.p.push_back(
+          places[static_cast<std::size_t>(lattice.number(0, 3))]);  // rounding may move p off the carrier
       samples.facing.push_back(lattice.number(0, 1) == 0 ? std::int8_t{-1} : std::int8_t{1});
     }
     for (std::size_t pixel = 0; pixel < samples.size(); ++pixel) {
@@ -198,7 +200,7 @@ TEST(PairTruth, SphereLightDecidesZerosToo) {
   const glm::vec3 p(0, 0, -4);
   glm::vec3 l;
   light_points_for(light, p, &l);
-  ASSERT_EQ(l, glm::vec3(0, 0, 4 - 0x1p-5f));  // r² / d nearer
+  ASSERT_EQ(l, glm::vec3(0, 0, 4 - 0x1p-5f));  // the centre of the disk that p sees, nearer by r² / d
   const std::array<glm::vec3, 5> ring = {glm::vec3(1, 0, 0), glm::vec3(1, 2, 0), glm::vec3(-1, 1, 0),
                                          glm::vec3(-2, -1, 0), glm::vec3(0, -1, 0)};
   int met = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// plane ids, rank and zero area against their definitions on soups drawn from a tiny lattice, where coplanar, doubled
-// and degenerate triangles are normal.
+// Tests plane ids, ranks and zero areas against their definitions on soups drawn from a tiny lattice, where coplanar,
+// doubled and degenerate triangles are normal.
 
 #include "tests/unit/visibility/scenes.hpp"
 #include "visibility/pair_truth.hpp"
@@ -27,7 +27,7 @@ SceneFloats soup(std::size_t triangles, const Point& point) {
   return make_scene_floats(scene);
 }
 
-/// Takes the floats as they are: no origin is subtracted that would round them.
+/// Takes the corners as they are: no origin is subtracted, which would round them.
 SceneFloats plain_soup(std::size_t triangles, const Point& point) {
   SceneFloats floats;
   for (std::uint32_t i = 0; i < triangles; ++i) {
@@ -60,8 +60,8 @@ TEST_P(Planes, LatticeSoup) {
 }
 
 TEST_P(Planes, LatticeOfUnevenSpacingAndWideExponents) {
-  // Coordinates of very different magnitude on each axis, the last bits of some next to the first bits of others: what
-  // 128-bit integers do not hold has to be decided all the same.
+  // Coordinates of very different magnitude on each axis, so that the last bits of some are next to the first bits of
+  // others: values that do not fit 128-bit integers must still be decided.
   std::mt19937 random(GetParam() + 1000);
   const double values[] = {0, 1, -1, 0x1p-60, 0x1p40, 1 + 0x1p-23, -0x1p-60, 0x1p-100};
   std::uniform_int_distribution<std::size_t> pick(0, std::size(values) - 1);
@@ -70,7 +70,7 @@ TEST_P(Planes, LatticeOfUnevenSpacingAndWideExponents) {
 }
 
 TEST_P(Planes, NearlyCoplanar) {
-  // A tilted plane of many triangles, some of whose corners are one ulp off.
+  // A tilted plane with many triangles, some of whose corners are one ulp off it.
   std::mt19937 random(GetParam() + 2000);
   std::uniform_int_distribution<int> lattice(-8, 8), rarely(0, 11);
   expect_definition(plain_soup(120, [&] {
@@ -82,7 +82,7 @@ TEST_P(Planes, NearlyCoplanar) {
 }
 
 TEST_P(Planes, PlanesWithoutAKeyModuloThePrime) {
-  // 2⁶¹ − 1 ≡ 0: edges of that length (differences of floats reach it exactly) leave nothing modulo the prime.
+  // Modulo the prime 2⁶¹ − 1, edges whose lengths are multiples of it (differences of floats reach them exactly) are 0.
   std::mt19937 random(GetParam() + 3000);
   const double values[] = {1, 0x1p61, 0x1p62};
   std::uniform_int_distribution<std::size_t> pick(0, 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of a scene with instances that a picture needs gives the same view samples, and the same truth of every
-// pair, as the scene in which each instance is a copy. Both are judged without any tree.
+// pair, as the scene in which each instance is a copy. Both are found without any tree.
 #include "visibility/seen/seen_part.hpp"
 
 #include "tests/unit/visibility/scenes.hpp"
@@ -27,7 +27,7 @@ struct Forest {
   scenes::Instances instances;
 };
 
-/// Shards over a floor, twelve times in any shape that a transform gives them: turned, mirrored, sheared, flat.
+/// Shards over a floor, placed twelve times by any transform: turned, mirrored, sheared, flattened.
 Forest forest(std::mt19937& random, const scenes::LightShape& shape) {
   std::uniform_real_distribution<double> real(-1, 1);
   const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
@@ -39,7 +39,7 @@ Forest forest(std::mt19937& random, const scenes::LightShape& shape) {
     const glm::dvec3 middle = point(0.5);
     shards.push_back({middle + point(0.3), middle + point(0.3), middle + point(0.3)});
   }
-  shards.push_back({glm::dvec3(0), glm::dvec3(0.1), glm::dvec3(0.2)});  // of no area
+  shards.push_back({glm::dvec3(0), glm::dvec3(0.1), glm::dvec3(0.2)});  // without area
   tests::add_object(one, "shards", shards);
   forest.instances.meshes.push_back(std::make_shared<const scenes::SharedMesh>(scenes::SharedMesh{one.soup}));
   for (std::uint32_t i = 0; i < 12; ++i) {
@@ -141,11 +141,11 @@ TEST(SeenPart, OfSomeRowsIsNoMoreThanTheWhole) {
     std::vector<std::uint32_t> before = std::exchange(together, {});
     std::ranges::set_union(before, more, std::back_inserter(together));
   }
-  // Clusters of view samples end where rows do, so that fewer or more may be near a shaft.
+  // Clusters of view samples end where a tile's rows end, so more or fewer triangles may be near a shaft.
   const std::vector<std::uint32_t> seen = numbers({}, {0, 15});
   EXPECT_TRUE(std::ranges::includes(together, seen));
   EXPECT_LT(seen.size(), all.size());
-  // A picture whose parts are known needs no second search for what is seen.
+  // If the parts of a picture are known, no second search for the visible triangles is needed.
   std::vector<std::uint64_t> viewed;
   for (const Tile& rows : {Tile{0, 4}, Tile{4, 7}, Tile{11, 4}}) {
     const SeenPart part = seen_part(meshes, camera, {&light, 1}, rows, {.viewed = &viewed});
@@ -168,14 +168,14 @@ TEST(PlacedMeshes, KeepTheTreesOfMeshesThatStay) {
     EXPECT_EQ(seen_part(kept, camera, {&light, 1}, {0, 15}).numbers,
               seen_part(anew, camera, {&light, 1}, {0, 15}).numbers);
   };
-  // An instance moves; the meshes are what they were, also if they are read again.
+  // An instance moves; the meshes stay the same, even if they are read again.
   forest.instances.all[3].placement.to_world[3] += glm::dvec4(0.7, 0.2, -3, 0);
   forest.instances.meshes[1] = std::make_shared<const scenes::SharedMesh>(*forest.instances.meshes[1]);
   kept.place(forest.scene, forest.instances);
   EXPECT_EQ(kept.trees_built(), 0U);
   expect_as_anew();
   kept.leave();
-  // One mesh changes, and both change places.
+  // One mesh changes, and the two meshes swap their places in the list.
   scenes::SharedMesh changed = *forest.instances.meshes[1];
   changed.soup.positions[0] *= 3;
   forest.instances.meshes[1] = forest.instances.meshes[0];
@@ -185,8 +185,8 @@ TEST(PlacedMeshes, KeepTheTreesOfMeshesThatStay) {
   expect_as_anew();
 }
 
-/// Every pair with a dome's light sample is decided as in the whole scene, and translucent triangles are there where
-/// nothing opaque is in between.
+/// Every pair with a dome's light sample is decided as in the whole scene, and the part has every translucent triangle
+/// that is not hidden from the light sample by an opaque one.
 TEST(SeenPart, HasABlockerOfEachPairWithADome) {
   std::mt19937 random(17);
   std::size_t left_out = 0, blocked = 0, visible = 0, filtered = 0;
@@ -198,7 +198,7 @@ TEST(SeenPart, HasABlockerOfEachPairWithADome) {
     Forest forest = visibility::forest(random, dome);
     if (round >= 2) forest.scene.objects[4].alpha = {scenes::Alpha::Mode::blend, 0.5, 0.5};
     if (round >= 3) forest.scene.objects[5].casts_shadow = false;
-    if (round >= 5) {  // a sun beside the dome
+    if (round >= 5) {  // a sun in addition to the dome
       forest.scene.lights.push_back(forest.scene.lights[0]);
       forest.scene.lights[1].shape = shapes()[3];
     }
@@ -208,7 +208,7 @@ TEST(SeenPart, HasABlockerOfEachPairWithADome) {
     std::vector<Light> lights;
     for (std::uint32_t i = 0; i < forest.scene.lights.size(); ++i)
       lights.push_back(make_light(forest.scene, i, whole.origin, request));
-    if (round >= 6) {  // an object that is none of the dome's casters
+    if (round >= 6) {  // an object that the dome's light ignores
       lights[0].unshaded_by.assign(forest.scene.objects.size(), 0);
       lights[0].unshaded_by[7] = 1;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares the triangles that a tree finds in a shaft with a comparison of each triangle with each plane.
+// Compares the triangles that a tree finds in a shaft with a test of each triangle against each plane.
 
 #include "visibility/seen/shaft_planes.hpp"
 
@@ -31,7 +31,7 @@ class ScatteredTriangles {
     tree_ = BoxTree(boxes, 4);
   }
 
-  /// Returns planes at random distances, all of which have the middle of the soup inside.
+  /// Returns planes at random distances, with the middle of the soup inside all of them.
   ShaftPlanes planes(std::uint32_t count) {
     ShaftPlanes planes;
     for (std::uint32_t i = 0; i < count; ++i) planes.add(point(), 6.0 + 3.0 * unit_(random_));
@@ -44,7 +44,7 @@ class ScatteredTriangles {
     std::ranges::sort(triangles);
     return triangles;
   }
-  /// Returns the triangles that no plane has wholly outside, by at least `margin`.
+  /// Returns the triangles that are not entirely outside any plane by at least `margin`.
   [[nodiscard]] std::vector<std::uint32_t> inside(const ShaftPlanes& planes, double margin) const {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t i = 0; i < soup_.triangles.size(); ++i) {
@@ -72,7 +72,7 @@ class ScatteredTriangles {
 TEST(ShaftPlanes, FindTheTrianglesThatNoPlaneHasOutside) {
   ScatteredTriangles scattered(3000);
   std::size_t some = 0;
-  // Fewer planes than a vector has lanes, as many, one more, several vectors, the most.
+  // Fewer planes than a vector has lanes, as many, one more, several vectors of them, and the largest number.
   for (const std::uint32_t count : {0U, 1U, 2U, 3U, 4U, 5U, 7U, 8U, 9U, 16U, 25U, 63U, 64U}) {
     for (int i = 0; i < 20; ++i) {
       const ShaftPlanes planes = scattered.planes(count);
@@ -90,7 +90,7 @@ TEST(ShaftPlanes, BeyondTheMostAreLeftOut) {
   ScatteredTriangles scattered(300);
   ShaftPlanes planes = scattered.planes(ShaftPlanes::kMost);
   const std::vector<std::uint32_t> found = scattered.found(planes);
-  planes.add({1, 0, 0}, -100);  // which would leave out all triangles
+  planes.add({1, 0, 0}, -100);  // this plane would exclude all triangles
   EXPECT_EQ(planes.count, ShaftPlanes::kMost);
   EXPECT_EQ(scattered.found(planes), found);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Σ of signed crossings over clipped edges = the number of triangles that the open segment meets, as integers, by the
-// exact pair decision, on soups drawn from a tiny lattice: edges through the segment, corners and edges on the light's
-// plane and on p's, light points on triangles' planes, edges along the ray, doubled and degenerate triangles are the
-// normal case.
+// The sum of signed crossings over clipped edges is the number of triangles that the open segment meets, as integers,
+// by the exact pair decision. Soups are drawn from a tiny lattice: edges through the segment, corners and edges on the
+// planes of the light and of p, light points on triangles' planes, edges along the ray, doubled and degenerate
+// triangles are the normal case.
 
 #include "mesh/silhouettes.hpp"
 #include "visibility/pair_truth.hpp"
@@ -30,7 +30,7 @@ std::string text(const glm::vec3& v) {
   return out.str();
 }
 
-/// Counts of cases in the runs, so that a test can say that it covered what it is about.
+/// Counts of special cases, so that a test can check that it covered them.
 struct Tally {
   int pairs = 0, met = 0, several = 0, zeros = 0, cut_at_light = 0, cut_at_p = 0, cancelled = 0;
 };
@@ -80,7 +80,7 @@ class Draw {
   glm::vec3 point(int reach) { return {number(-reach, reach), number(-reach, reach), number(-reach, reach)}; }
 
   /// Corners from a pool of few positions, so that edges are shared, crossed and doubled; some positions are listed
-  /// twice, so that sharing is by place and not by number.
+  /// twice, so that edges are shared by position and not by number.
   Soup soup(int triangles, int reach) {
     Soup soup;
     const int pool = number(3, 2 * triangles + 2);
@@ -94,7 +94,8 @@ class Draw {
     return soup;
   }
 
-  /// Any frame on the lattice; half of them level, so that p's plane and the light's hold lattice points.
+  /// Any frame on the lattice; half of the frames are level, so that the planes of p and of the light contain lattice
+  /// points.
   Light frame(int reach) {
     Light light;
     const bool level = number(0, 1) == 0;
@@ -107,7 +108,7 @@ class Draw {
     return light;
   }
 
-  /// A pair with p off the plane through l.
+  /// A pair whose p is not on the light's plane through l.
   CrossingPair pair(const Light& light, int reach) {
     const glm::dvec3 c(light.center), n = glm::cross(glm::dvec3(light.center_u) - c, glm::dvec3(light.center_v) - c);
     CrossingPair pair;
@@ -144,7 +145,8 @@ TEST_P(SignedCrossingsOnLattice, EqualTheTrianglesMet) {
 }
 
 TEST_P(SignedCrossingsOnLattice, EveryWayToStraddle) {
-  // One triangle across the slab 0 < y < 1 at a time, corners on and beyond both planes: cuts decide most of them.
+  // One triangle at a time across the slab 0 < y < 1, with corners on both planes and beyond them: cuts decide most
+  // cases.
   Draw draw(GetParam() + 100);
   Tally tally;
   Light light;
@@ -165,7 +167,7 @@ TEST_P(SignedCrossingsOnLattice, EveryWayToStraddle) {
 }
 
 TEST_P(SignedCrossingsOnLattice, LightPointsThatRoundingPutBesideTheirPlane) {
-  // No lattice: frames and points in general position and an ulp from it, magnitudes far apart.
+  // No lattice: frames and points in general position and an ulp from special ones, with magnitudes far apart.
   Draw draw(GetParam() + 200);
   std::uniform_real_distribution<float> anywhere(-1, 1);
   Tally tally;
@@ -197,8 +199,9 @@ TEST_P(SignedCrossingsOnLattice, LightPointsThatRoundingPutBesideTheirPlane) {
 INSTANTIATE_TEST_SUITE_P(Seeds, SignedCrossingsOnLattice, testing::Range(0u, 6u));
 
 TEST(SignedCrossings, CutsAloneCanDecide) {
-  // A sheet at z = 1 through the whole slab 0 < y < 1, the ray along +z. p's cut is at infinity on the ray. A light
-  // point behind the sheet has nothing else on its ray; on the ray of one in front of it there is the light's cut, too.
+  // A sheet at z = 1 through the whole slab 0 < y < 1, with the ray along +z. The cut at p's plane is at infinity on
+  // the ray. If the light point is behind the sheet, nothing else is on its ray; if it is in front, the cut at the
+  // light's plane is, too.
   Light light;
   light.center_u = {0, 0, 1};
   light.center_v = {1, 0, 0};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth complexity from signed edges (Laine et al. 2005; any soup: ours), exact. Derived in docs/signed-crossings.md,
-// whose sections the comments name. Works on edges that scatter methods would project onto the light; a method in
-// floats has this one as its twin.
+// Depth complexity from signed edges (Laine et al. 2005; for any soup: ours), exact. It is derived in
+// docs/signed-crossings.md, whose sections the comments name in parentheses. It works on the edges that scatter methods
+// would project onto the light; tests compare methods in floats with it.
 
 #include "tests/property/visibility/signed_crossings_sum.hpp"
 
@@ -44,7 +44,7 @@ int sign(const Exact& value) {
 }
 
 /// A point as p sees it: x − p = (S u + T v + W (l − p)) / scale, scale > 0. The light point is (0, 0, 1), the ray from
-/// it along u is T = 0 < S; W = 0 on p's plane, W = scale on l's. (Coordinates)
+/// it along u is T = 0 < S; W = 0 on p's plane, W = scale on the light's plane. (Coordinates)
 struct Seen {
   Exact s, t, w;
 };
@@ -94,20 +94,21 @@ Corner place_corner(const Frame& frame, const glm::dvec3& x) {
   return corner;
 }
 
-/// Returns the place where the edge a→b passes the height `w`, which lies between theirs; times a positive number.
+/// Returns a positive multiple of the point where the edge a→b passes the height `w`, which lies between the heights of
+/// a and b.
 Seen cut(const Seen& a, const Seen& b, const Exact& w) {
   const Exact of_a = b.w - w, of_b = w - a.w;
   Seen seen{of_a * a.s + of_b * b.s, of_a * a.t + of_b * b.t, of_a * a.w + of_b * b.w};
   return b.w < a.w ? Seen{-seen.s, -seen.t, -seen.w} : seen;
 }
 
-/// The end of a clipped edge, and whether it counts as above the ray's line. (Ties: T)
+/// The end of a clipped edge, and whether it counts as above the line of the ray. (Ties: T)
 struct End {
   Seen seen;
   bool above = false;
 };
 
-/// The clipped edge's end on the side of `from`.
+/// Returns the clipped edge's end on the side of `from`.
 End end_towards(const Corner& from, const Corner& other, const Frame& frame) {
   if (from.place == Place::between) return {from.seen, sign(from.seen.t) > 0};
   End end{cut(from.seen, other.seen, from.place == Place::at_p_or_behind ? Exact(0) : frame.light_w()), false};
@@ -121,14 +122,14 @@ bool enters_slab(const Corner& a, const Corner& b) {
 }
 
 /// An edge from one side of the ray's line to the other, with the light point on its left (`left` > 0) or right (< 0),
-/// crosses the ray itself upwards (+1), downwards (−1) or not. If the light point is on the edge (0), it does not: l +
-/// ε·u is beyond it. (Ties: E)
+/// crosses the ray itself upwards (+1), downwards (−1) or not (0). If the light point is on the edge (0), it does not:
+/// the moved light point l + ε·u is beyond the edge. (Ties: E)
 int crossing(bool from_above, bool to_above, int left) {
   if (from_above == to_above) return 0;
   return to_above ? (left > 0 ? 1 : 0) : (left < 0 ? -1 : 0);
 }
 
-/// The sign of det[light point, a, b]: on which side of a→b the light point lies.
+/// Returns the sign of det[light point, a, b]: the side of a→b on which the light point lies.
 int light_on_left(const Seen& a, const Seen& b) {
   return sign(a.s * b.t - b.s * a.t);
 }
@@ -140,8 +141,8 @@ int edge_crossing(const Corner& a, const Corner& b, const Frame& frame) {
   return crossing(from_above, to_above, light_on_left(a.seen, b.seen));
 }
 
-/// One plane's cut edge of a triangle wound as in `corners`: from where the boundary leaves the slab through the plane
-/// to where it comes back.
+/// Returns one plane's cut edge of a triangle wound as in `corners`: from the point where the boundary leaves the slab
+/// through the plane to the point where it comes back.
 std::optional<std::pair<End, End>> cut_edge(const std::array<Corner, 3>& corners, Place outside, const Frame& frame) {
   std::optional<End> leaves, returns;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -16,8 +16,8 @@ struct CrossingPair {
   glm::vec3 p{0}, l{0};
 };
 
-/// Signed crossings of a ray with the edges of clipped triangles. The parts tell how much of the answer depends on
-/// clipping; only their sum has a meaning of its own.
+/// Signed crossings of a ray with the edges of clipped triangles. The parts show how much of the answer depends on
+/// clipping; only their sum has a meaning by itself.
 struct SignedCrossings {
   int edges = 0;          ///< Σ over the graph's edges, clipped, each k_e(p) times
   int cuts_at_light = 0;  ///< Σ over the triangles' cut edges in the plane through l
@@ -28,13 +28,13 @@ struct SignedCrossings {
   [[nodiscard]] int total() const { return edges + cuts_at_light + cuts_at_p; }
 };
 
-/// Returns how many triangles stand between p and l, counted from edges alone: every edge once with its signed
-/// multiplicity k_e(p), every triangle's facing once. Exact on the numbers as stored; derivation and tie rules in
-/// docs/signed-crossings.md. The slab is that between the plane through l along the light's frame and the parallel one
-/// through p: a light point that rounding put beside its light's plane is no special case.
+/// Returns how many triangles are between p and l, counted from edges alone: every edge once with its signed
+/// multiplicity k_e(p), every triangle's facing once. Exact for the stored numbers; derivation and tie rules are in
+/// docs/signed-crossings.md. The slab is between the plane through l along the light's frame and the parallel plane
+/// through p: a light point that rounding moved off its light's plane is no special case.
 ///
-/// `mesh` and `graph` are the triangles that count: carriers are left out by the caller. `facings` is
-/// mesh::facings(mesh, graph, p). The light must be planar, and p off the plane through l: asserted.
+/// `mesh` and `graph` are the triangles that count: the caller leaves out carriers. `facings` is mesh::facings(mesh,
+/// graph, p). The light must be planar, and p off the plane through l: both are asserted.
 SignedCrossings signed_crossings(const mesh::MeshView& mesh, const mesh::EdgeGraph& graph,
                                  std::span<const mesh::Side> facings, const CrossingPair& pair, const Light& light);
 

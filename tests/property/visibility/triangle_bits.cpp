@@ -23,10 +23,10 @@ std::vector<std::uint64_t> bits_of(const TriangleBits& bits, std::uint64_t first
 }
 
 TEST(TriangleBits, AreThoseThatAnyThreadSet) {
-  constexpr std::uint64_t kTriangles = 50'000;  // some pages, the last one not whole
+  constexpr std::uint64_t kTriangles = 50'000;  // several pages, the last of them incomplete
   std::mt19937_64 random(3);
   std::vector<std::uint64_t> wanted{0, 63, 64, 4095, 4096, kTriangles - 1};
-  for (int i = 0; i < 3000; ++i) wanted.push_back(8192 + random() % 9000);  // pages between without a bit
+  for (int i = 0; i < 3000; ++i) wanted.push_back(8192 + random() % 9000);  // leaves pages without a bit in between
   TriangleBits bits(kTriangles);
   tbb::parallel_for(std::size_t{0}, 4 * wanted.size(), [&](std::size_t i) { bits.set(wanted[i % wanted.size()]); });
   const std::set<std::uint64_t> all(wanted.begin(), wanted.end());

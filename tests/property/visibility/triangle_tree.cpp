@@ -17,7 +17,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Walks a whole tree; every triangle is counted, every node and leaf reached once.
+/// Walks through a whole tree and counts triangles; every node and leaf must be reached once.
 struct Walk {
   const SceneFloats& floats;
   const TriangleTree& tree;
@@ -33,7 +33,7 @@ struct Walk {
     if (!tree.nodes.empty()) node(0, 1, {});
   }
 
-  /// `around`: all boxes from the root to here.
+  /// `around`: all boxes from the root to this node.
   void node(std::uint32_t index, std::uint32_t depth, const std::vector<TriangleTree::Child>& around) {
     ASSERT_LT(index, tree.nodes.size());
     ++node_seen[index];
@@ -105,7 +105,7 @@ TEST(TriangleTree, HoldsDoublesAsOftenAsTheyAre) {
   }
 }
 
-/// Small triangles around a place.
+/// Adds small triangles around a place.
 void add_heap(std::vector<tests::Corners>& triangles, std::uint32_t seed, std::uint32_t count, const glm::dvec3& at,
               double size) {
   tests::LatticeSoup soup(seed, 100);
@@ -119,7 +119,8 @@ void add_heap(std::vector<tests::Corners>& triangles, std::uint32_t seed, std::u
 TEST(TriangleTree, HoldsHeapsThatAreSpecksBesideTheWhole) {
   std::vector<tests::Corners> triangles{{glm::dvec3(-8), glm::dvec3(8, -8, 8), glm::dvec3(8)}};
   double size = 0.01;
-  for (std::uint32_t i = 0; i < 12; ++i, size *= 0.25)  // each fits a cell of the grid that its heap before is in
+  for (std::uint32_t i = 0; i < 12;
+       ++i, size *= 0.25)  // each heap fits in the grid cell that contains the heap before it
     add_heap(triangles, i, 500, glm::dvec3(size), 0.001 * size);
   const SceneFloats floats = make_scene_floats(with(triangles));
   check(floats);
@@ -144,7 +145,8 @@ TEST(TriangleTree, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-/// Half of the surface of the children's boxes over the whole's: how many nodes and leaves a random ray touches.
+/// Returns half of the surface of all children's boxes over that of the whole: how many nodes and leaves a random ray
+/// touches.
 double touched(const TriangleTree& tree) {
   double sum = 0;
   Bounds all{glm::vec3(1e30F), glm::vec3(-1e30F)};
@@ -169,7 +171,7 @@ TEST(TriangleTree, DividesWhereRaysPassBetween) {
     const glm::dvec3 at(std::cos(turned), std::sin(turned), 0.01 * i);
     add_heap(triangles, i, 20 + i % 7 * 10, (1 + 0.02 * i) * at, 0.0002);
   }
-  // 2.2; with the dearest of all divisions in place of the cheapest 15.
+  // The value is 2.2; with the worst division everywhere in place of the best it is 15.
   EXPECT_LT(touched(make_triangle_tree(make_scene_floats(with(triangles)))), 4);
 }
 
@@ -179,7 +181,7 @@ TEST(TriangleTree, AlongAnotherHoldsEveryBoxOnce) {
     const SceneFloats floats = make_scene_floats(with(soup.triangles(count)));
     std::vector<std::uint32_t> casters;
     std::vector<Bounds> boxes;
-    SceneFloats only = floats;  // whose triangles have the boxes' numbers
+    SceneFloats only = floats;  // its triangles have the boxes' numbers
     only.triangles.clear();
     for (std::uint32_t i = 0; i < floats.triangles.size(); ++i) {
       if (floats.casts_shadow[i] == 0) continue;
@@ -188,7 +190,7 @@ TEST(TriangleTree, AlongAnotherHoldsEveryBoxOnce) {
       boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
       only.triangles.push_back(floats.triangles[i]);
     }
-    // Each near its own triangle, or many near one.
+    // Each box is near its own triangle, or many boxes are near one.
     for (const std::size_t homes : {casters.size(), std::size_t{3}}) {
       SCOPED_TRACE(fmt::format("{} triangles, near {}", count, homes));
       std::vector<std::uint32_t> near;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what must not change the coverage integral: the point from which a closed loop is looked at, the place where an
-// edge is cut, mirrors, scale, and the order and winding of triangles.
+// Tests changes that must not matter to the coverage integral: the reference point of a closed loop, the place where an
+// edge is cut, mirroring, scale, and the order and winding of triangles.
 //
-//
-// Points of the light are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰ (none is on an edge's line except
-// on purpose): all signs here are exact in double. Tolerance: sums of a few dozen areas of a few ulps of 4 each.
+// Points of the light are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰ (none is on an edge's line,
+// except on purpose): all signs here are exact in double. Tolerance: sums of a few dozen areas, each with an error of a
+// few ulps of 4.
 
 #include "tests/unit/coverage_stage.hpp"
 #include "tests/unit/exact_area_soups.hpp"
@@ -36,7 +36,7 @@ int sign_of(double value) {
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
-/// The square, the disk, a triangle and a pentagon; all hold the square of half-size 5/8 around 0.
+/// One of the square, the disk, a triangle and a pentagon; all contain the square of half-size 5/8 around 0.
 LightOutline draw_outline() {
   switch (draw(0, 3)) {
     case 0:
@@ -64,7 +64,7 @@ std::optional<ClippedEdge> clipped(const LightOutline& outline, const glm::dvec2
   return clip_to_light(outline, {a.x / 2, a.y / 2, 0.5}, {b.x / 2, b.y / 2, 0.5});  // half way to the light
 }
 
-/// 0 if the edge does not appear, or its line goes through the reference point.
+/// Returns 0 if the edge does not appear, or its line goes through the reference point.
 double beyond(const LightOutline& outline, const glm::dvec2& c, const glm::dvec2& a, const glm::dvec2& b) {
   const auto edge = clipped(outline, a, b);
   const int side = sign_of(cross2(a - c, b - c));
@@ -90,7 +90,7 @@ bool is_on_a_line(const Loop& loop, const glm::dvec2& c) {
   return false;
 }
 
-/// ∫_L of the winding number.
+/// Returns the integral of the winding number over the light.
 double area_by(const LightOutline& outline, const Loop& loop, const glm::dvec2& c) {
   double sum = winding(loop, c) * outline.area;
   for (std::size_t i = 0; i < loop.size(); ++i) sum -= beyond(outline, c, loop[i], loop[(i + 1) % loop.size()]);
@@ -108,7 +108,7 @@ RC_GTEST_PROP(Coverage, AClosedLoopHasOneAreaFromWhereverItIsSeen, ()) {
 RC_GTEST_PROP(Coverage, ALoopWithinTheLightHasItsShoelaceArea, ()) {
   const LightOutline outline = draw_outline();
   Loop loop = draw_loop();
-  for (glm::dvec2& q : loop) q /= 4.0;  // |s|, |t| ≤ 5/8: within every outline
+  for (glm::dvec2& q : loop) q /= 4.0;  // |s|, |t| ≤ 5/8: inside every outline
   const glm::dvec2 c = draw_reference();
   if (is_on_a_line(loop, c)) RC_DISCARD("on a line");
   double doubled = 0;
@@ -137,7 +137,7 @@ RC_GTEST_PROP(Coverage, TurningAnEdgeOverOrSeeingItInAMirrorChangesTheSign, ()) 
   RC_ASSERT(std::abs(area + beyond(mirrored, mirror(c), mirror(a), mirror(b))) < kShareRounding);
 }
 
-/// Definition: the share of a grid of points whose segment from c crosses the edge.
+/// By definition, the expected value is the share of grid points whose segment from c crosses the edge.
 RC_GTEST_PROP(Coverage, IsTheAreaThatSegmentsFromTheReferencePointReachAcrossTheEdge, ()) {
   const LightOutline outline = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}, 4};
   const Loop ends = draw_loop();
@@ -150,8 +150,8 @@ RC_GTEST_PROP(Coverage, IsTheAreaThatSegmentsFromTheReferencePointReachAcrossThe
     const bool between = (cross2(l - c, a - c) > 0) != (cross2(l - c, b - c) > 0);
     across += parted && between ? 1 : 0;
   }
-  // The region is convex except at its notch at c: its boundary, at most 12 long, passes through at most 2 · 12 · 32 +
-  // 8 of the cells of side 1/32; each may be counted wrong.
+  // The region is convex except for its notch at c: its boundary, at most 12 long, passes through at most 2 · 12 · 32 +
+  // 8 of the cells of side 1/32; each of them may be counted wrong.
   const double expected = sign_of(cross2(a - c, b - c)) * 4.0 * across / (kGrid * kGrid);
   RC_ASSERT(std::abs(beyond(outline, c, a, b) - expected) < (2 * 12 * 32 + 8) * 4.0 / (kGrid * kGrid));
 }
@@ -165,7 +165,7 @@ scenes::Scene scaled_by_two(scenes::Scene scene) {
   return scene;
 }
 
-/// Strips of triangles between the floor and a tilted light that they do not reach.
+/// Returns strips of triangles between the floor and a tilted light, which they do not reach.
 std::vector<tests::Corners> draw_soup(std::mt19937& random) {
   std::vector<tests::Corners> soup = tests::lattice_soup(random, draw(2, 8));
   for (tests::Corners& corners : soup) {

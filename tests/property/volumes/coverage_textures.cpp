@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the part of a textured light beyond one edge, against its texels one by one.
+// Tests the part of a textured light beyond one edge by summing over its texels one by one.
 //
 // Points are multiples of 2⁻⁴ and reference points odd multiples of 2⁻¹⁰, as in coverage_properties.cpp: signs are
 // exact.
@@ -69,7 +69,7 @@ double area_of(const Polygon& polygon) {
   return doubled / 2;
 }
 
-/// Texel by texel: of each, the part of the convex polygon within it.
+/// Sums, texel by texel, the part of the convex polygon within it.
 double weight_by_texels(const visibility::LightTexture& texture, const Polygon& polygon) {
   const glm::dvec2 size(2.0 / texture.width, 2.0 / texture.height);
   double sum = 0;
@@ -85,8 +85,9 @@ double weight_by_texels(const visibility::LightTexture& texture, const Polygon& 
   return sum;
 }
 
-/// The mean over less than 2⁻²⁰ of a function whose slope jumps by at most brightest / 4 is taken in the middle: off by
-/// at most 2⁻²⁰ / 8 of that, over a height of 2, in three walks. Beside it sums of some hundred roundings.
+/// The mean of a function over less than 2⁻²⁰, whose slope jumps by at most brightest / 4, is taken in the middle: it
+/// is off by at most 2⁻²⁰ / 8 of that, over a height of 2, in three walks. In addition there are sums of some hundred
+/// rounding errors.
 double tolerance(const TextureWeights& weights, int walks = 3) {
   return walks * 0x1p-24 * weights.brightest() + 1e-12;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests against rationals where edges pass through a light's plane, and normals.
+// Tests against rationals: the points where edges pass through a light's plane, and normals.
 
 #include "tests/agreement/hostile_lamps.hpp"
 #include "volumes/edges/cut_ends.hpp"
@@ -38,7 +38,7 @@ TEST(RoundedNormal, IsTheExactOneRounded) {
     std::array<glm::vec3, 3> corners{point(1), point(round % 2 == 0 ? 1.0F : 600.0F), {}};
     const float width = std::ldexp(1.0F, -static_cast<int>(random() % 40));
     corners[2] = glm::mix(corners[0], corners[1], 0.3F) + point(width);
-    if (round % 5 == 0) corners[2].z = corners[1].z = corners[0].z;  // coordinates that are 0
+    if (round % 5 == 0) corners[2].z = corners[1].z = corners[0].z;  // some coordinates of the normal are then 0
     const Rationals n = cross(difference(corners[1], corners[0]), difference(corners[2], corners[0]));
     const glm::vec3 rounded = rounded_normal(corners);
     mpq_class largest = 0;
@@ -48,7 +48,7 @@ TEST(RoundedNormal, IsTheExactOneRounded) {
       continue;
     }
     needles += width < 1e-6F ? 1 : 0;
-    // One power of two for all three: that of the largest.
+    // All three are scaled by one power of two: that of the largest.
     const double scale = std::ldexp(1.0, -std::ilogb(largest.get_d()));
     for (std::size_t i = 0; i < 3; ++i) {
       const mpq_class exact = n[i] * mpq_class(scale), off = abs(exact - mpq_class(rounded[static_cast<int>(i)]));
@@ -58,7 +58,8 @@ TEST(RoundedNormal, IsTheExactOneRounded) {
   EXPECT_GT(needles, 1000U);
 }
 
-/// A place on the light is within rounding of the exact one; what is far beside it is on the edge's line.
+/// A point on the light is within rounding of the exact one; a point far outside the light is at least on the edge's
+/// line.
 TEST(CutEnds, AreWhereTheEdgesPassThroughThePlane) {
   std::size_t places = 0, far = 0;
   for (std::uint32_t seed = 0; seed < 300; ++seed) {

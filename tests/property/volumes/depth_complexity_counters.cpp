@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counters themselves against the number of triangles that each segment meets, triangle by triangle with exact
-// predicates, on broken meshes; and where the paper's counters hold: closed meshes, not those that an open boundary
-// lets fold over.
+// Compares the counters themselves with the number of triangles that each segment meets, found triangle by triangle
+// with exact predicates, on broken meshes. Also tests where the paper's counters are right: for closed meshes, but not
+// for open ones that fold over at their boundary.
 
 #include "tests/agreement/differences.hpp"
 
@@ -22,7 +22,7 @@ using visibility::ViewSamples;
 
 class Counters : public tests::DeviceTest {
  protected:
-  /// Counters of every `step`-th pixel.
+  /// Tests the counters of every `step`-th pixel.
   void expect_layers(const std::string& name, const scenes::Scene& scene, std::uint32_t size, std::size_t step) {
     SCOPED_TRACE(name);
     const tests::Stage stage(scene, size, size, {64, 0, 0, visibility::SamplePattern::sobol, 7});
@@ -34,7 +34,7 @@ class Counters : public tests::DeviceTest {
                total_.several, total_.open);
     EXPECT_GT(total_.met, total_.pairs / 50);
     EXPECT_GT(total_.several, total_.pairs / 100);
-    EXPECT_LT(total_.open, total_.pairs / 10);  // else the counters were not looked at
+    EXPECT_LT(total_.open, total_.pairs / 10);  // otherwise the counters would hardly be tested
   }
 
   std::unique_ptr<DepthCounters> method_ = make_depth_counters(device());
@@ -69,7 +69,7 @@ TEST_F(CountersFull, EqualTheLayersOnEveryDefect) {
   expect_seen_enough();
 }
 
-/// A ball of `rings` bands around an axis that leans; without the upper ones it is a bowl.
+/// A ball of `rings` bands around a tilted axis; with only the first `used` bands it is a bowl.
 mesh::TriangleSoup ball(int rings, int used) {
   constexpr int kSegments = 12;
   mesh::TriangleSoup soup;
@@ -120,7 +120,7 @@ TEST_F(Variants, LaineIsRightForClosedMeshesOnly) {
   EXPECT_EQ(wrong_pairs(*laine, closed), 0U);
   EXPECT_GT(laine->counters()["referenceRays"], 0U);
   EXPECT_EQ(soup->counters()["referenceRays"], 0U);
-  // A bowl shows its inside over its rim: there two layers end in a silhouette, and one in the rim.
+  // A bowl shows its inside over its rim: there two layers end at a silhouette, and one at the rim.
   const tests::Stage open(tests::with_a_floor(ball(8, 6)), 40, 40, {64, 0, 0, visibility::SamplePattern::rows, 0});
   EXPECT_EQ(wrong_pairs(*soup, open), 0U);
   const std::size_t wrong = wrong_pairs(*laine, open);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth complexity where nothing is in general position: every pair of variant=soup equals the exact decision, without
-// tolerance, for light samples in rows and for heaps of points.
+// Depth complexity on lattices, where nothing is in general position: every pair of variant=soup equals the exact
+// decision, without tolerance, for light samples in rows and for heaps of points.
 
 #include "tests/agreement/mask_methods.hpp"
 #include "tests/property/lattice_truth.hpp"
@@ -25,8 +25,8 @@ using visibility::ViewSamples;
 
 constexpr std::array kEngines{tests::kDepthComplexity, tests::kNativeDepthComplexity};
 
-/// `most_open`: the share of pairs that may be left to exact predicates: on the device 40.7, 22.8 and 14.5 % when this
-/// was written, where 22.8, 14.1 and 7.8 % of the pairs had a predicate that is zero.
+/// `most_open` is the share of pairs that may be left to exact predicates. On the device it was 40.7, 22.8 and 14.5 %
+/// when this was written, and 22.8, 14.1 and 7.8 % of the pairs had a predicate that is zero.
 struct DepthRange {
   int range;
   double most_open;
@@ -56,8 +56,8 @@ TEST_P(DepthLattice, EveryPairIsTheExactDecision) {
 INSTANTIATE_TEST_SUITE_P(Range, DepthLattice, testing::Combine(testing::ValuesIn(kRanges), testing::ValuesIn(kEngines)),
                          name_of_range);
 
-/// Edges found by the papers' structures: none may be missing, also of triangles coplanar with p's own, and of edges
-/// cut at the light's plane.
+/// Edges found by the papers' search structures: none may be missing, also for triangles coplanar with p's own, and for
+/// edges cut at the light's plane.
 class DepthSearch : public tests::DeviceTest, public testing::WithParamInterface<const char*> {};
 TEST_P(DepthSearch, EveryPairIsTheExactDecision) {
   PairCounts counts;
@@ -68,7 +68,7 @@ TEST_P(DepthSearch, EveryPairIsTheExactDecision) {
   tests::expect_all_kinds(counts);
 }
 /// A light seen from so near its plane that the rounding of its stored samples off that plane decides what hides them:
-/// an occluder's edge that passes just beside the light as it is meant.
+/// an occluder's edge passes just outside the exact light.
 TEST_P(DepthSearch, ALightSeenEdgeOn) {
   tests::MethodsByLayout methods([&] { return make_depth_complexity(device(), {{"search", GetParam()}}); });
   PairCounts counts;
@@ -81,7 +81,7 @@ TEST_P(DepthSearch, ALightSeenEdgeOn) {
     constexpr double kHalf = 0.005;
     const double height = 2e-5 * (1 + 0.2 * real(random)), side = seed % 2 == 0 ? 1 : -1;
     const auto at = [&](double x, double y, double z) { return center + x * d + y * w + z * n; };
-    // The patch is halfway, as high there as a segment from p to a point just beside the light's rim.
+    // The patch is halfway, at the height where a segment from p passes to a point just outside the light's rim.
     const double beside = side * kHalf * (1.002 + 0.074 * (1 + real(random)));
     const double p_height = height * (1 - beside) / (0.5 - beside), patch = 2e-5;
     scenes::Scene scene;
@@ -112,9 +112,9 @@ TEST_P(DepthSearch, ALightSeenEdgeOn) {
   EXPECT_GT(counts.visible, 1000u);
   EXPECT_GT(counts.blocked, 1000u);
 }
-/// A fold between a floor and a wall, which is no silhouette as the light sees it, and view samples on another triangle
-/// of the floor's plane, within a few roundings of the fold and off that plane: some see the fold above the plane, with
-/// light below it, which no triangle hides, and above it, which the wall hides.
+/// A fold between a floor and a wall, which is no silhouette as seen from the light. View samples are on another
+/// triangle of the floor's plane, within a few roundings of the fold and off that plane. From some of them the fold
+/// appears above the plane: no triangle hides the light below the fold, and the wall hides the light above it.
 TEST_P(DepthSearch, AFoldInTheCarriersPlaneByAHair) {
   tests::MethodsByLayout methods([&] { return make_depth_complexity(device(), {{"search", GetParam()}}); });
   PairCounts counts;
@@ -128,7 +128,9 @@ TEST_P(DepthSearch, AFoldInTheCarriersPlaneByAHair) {
     while (glm::length(glm::cross(u, v)) < 5) u = whole(3), v = whole(3);
     const glm::dvec3 base = whole(24), along = glm::normalize(v), up = glm::normalize(glm::cross(u, v)),
                      behind = glm::cross(along, up);  // the side of u, where the view samples are
-    const auto at = [&](double i, double j) { return (base + i * u + j * v) / 64.0; };  // exact, so all are coplanar
+    const auto at = [&](double i, double j) {
+      return (base + i * u + j * v) / 64.0;
+    };  // exact, so all triangles are coplanar
     std::vector<tests::Corners> floor_and_wall;
     for (int j = -8; j < 8; ++j) {
       const glm::dvec3 a = at(0, j), b = at(0, j + 1), high = 0.3 * up;
@@ -141,7 +143,7 @@ TEST_P(DepthSearch, AFoldInTheCarriersPlaneByAHair) {
     tests::add_object(scene, "carrier", {{at(8, -9), at(8, 9), at(-3, 0)}});
     tests::add_object(scene, "floor and wall", floor_and_wall);
     tests::add_object(scene, "anchor", {{glm::dvec3(-2), glm::dvec3(2), glm::dvec3(2, -2, 2)}}).casts_shadow = false;
-    const double height = 0.7 + 0.2 * real(random);  // of the light, as an angle
+    const double height = 0.7 + 0.2 * real(random);  // elevation of the light, as an angle
     const glm::dvec3 away = std::sin(height) * up - std::cos(height) * behind;
     scene.lights.push_back(tests::rectangle_light(at(0, 0) + away, 0.2 * along, 0.3 * glm::cross(along, away)));
     scene.lights[0].two_sided = true;
@@ -171,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(Structure, DepthSearch, testing::Values("kd-tree", "hem
   return std::string(it.param).starts_with("kd") ? "kd_tree" : "hemicube";
 });
 
-/// These run without the validation layer, which takes most of the time.
+/// These tests run without the validation layer, which takes most of the time.
 class DepthLatticeFull : public testing::TestWithParam<RangeAndEngine> {};
 TEST_P(DepthLatticeFull, EveryPairIsTheExactDecision) {
   const auto& [of, engine] = GetParam();
@@ -190,14 +192,14 @@ class DepthHard : public tests::DeviceTest, public testing::WithParamInterface<t
 INSTANTIATE_TEST_SUITE_P(Engine, DepthHard, testing::ValuesIn(kEngines),
                          [](const auto& it) { return std::string(it.param.name); });
 
-/// Triangles that reach behind p, past the light and through it, in general position: all of it must be right, for
-/// every kind of light and pattern. Next to nothing is left to exact predicates (2.6 % of all pairs, less than 6 % in
-/// 22 of the 24 soups, when this was written). This share may not grow.
+/// Triangles that reach behind p, past the light and through it, in general position: every pair must be right, for
+/// every kind of light and pattern. Very little is left to exact predicates (2.6 % of all pairs, less than 6 % in 22 of
+/// the 24 soups, when this was written). This share may not grow.
 TEST_P(DepthHard, SoupsAllAroundTheLight) {
   const auto method = GetParam().make(device(), {});
   PairCounts counts;
   std::uint64_t open = 0;
-  std::size_t hardly_open = 0;  // soups with less than 6 %
+  std::size_t hardly_open = 0;  // soups with an open share of less than 6 %
   for (std::uint32_t seed = 0; seed < 24; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> real(-1, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures errors of the places where rows=exact cuts edges and casters at the disk that a view sample sees of a
-// sphere, as shares of their bounds, and tests that edges and cuts that end at one place there have the same
+// sphere, as shares of their bounds, and tests that edges and cuts that end at the same place have the same
 // coordinates.
 
 #include "engines/vectors/cone_light.hpp"
@@ -23,7 +23,8 @@ namespace {
 
 using namespace tests_of_rows;
 
-/// A sphere, and an edge through the disk that p sees of it: at any angle to the disk, down to one in a million.
+/// Returns a sphere, and an edge through the disk that p sees of it: at any angle to the disk, down to one in a
+/// million.
 Case through_a_disk(tests::Numbers numbers) {
   Case of = on_a_floor(std::exp2(2 - 6 * numbers.next()) * numbers.vector());
   const glm::dvec3 middle = glm::dvec3(of.p) + glm::dvec3(numbers.real(), 1 + 3 * numbers.next(), numbers.real());
@@ -40,7 +41,7 @@ Case through_a_disk(tests::Numbers numbers) {
   return of;
 }
 
-/// rows=exact at one view sample under a sphere, with the casters that are near to its disk.
+/// rows=exact at one view sample under a sphere, with the casters near the disk.
 class AtADisk {
  public:
   AtADisk(const Case& of, std::span<const std::array<glm::vec3, 3>> casters)
@@ -128,7 +129,7 @@ TEST(DiskBounds, WhereEdgesPassThrough) {
   expect_within("disk", search(through_a_disk, use_at_disk), 0.005);
 }
 
-/// An outline whose parts end one ulp apart is open. If its gap is at the light's left side, all rows above have a
+/// An outline whose parts end one ulp apart is open. If the gap is at the light's left side, all rows above have a
 /// wrong depth.
 TEST(DiskBounds, EdgesAndCutsEndAtTheSamePlace) {
   std::mt19937 random(3);
@@ -153,7 +154,7 @@ TEST(DiskBounds, EdgesAndCutsEndAtTheSamePlace) {
            {glm::dvec2(placed->edge.x0, placed->edge.y0), glm::dvec2(placed->edge.x1, placed->edge.y1)})
         ends_there += static_cast<int>(std::ranges::count(cut_ends, end));
     }
-    // Edges that leave a window of twice the light end at the window.
+    // Edges that leave a window twice as large as the light end at the window.
     const auto on_light = [](const glm::dvec2& x) { return glm::length(x - 8.0) < 17; };
     if (!std::ranges::all_of(cut_ends, on_light)) continue;
     EXPECT_EQ(ends_there, 2) << round;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cones of normals in a hierarchy of edges: each holds the normals of every edge below it, up to sign. Where normals
-// lie in a plane angles add up, and a cone joined of others may be no narrower than their sum.
+// Tests cones of normals in a hierarchy of edges: each holds the normals of every edge below it, up to sign. If normals
+// lie in a plane, angles add up, and a cone joined from others must not be narrower than their sum.
 
 #include "volumes/edges/edge_tree.hpp"
 
@@ -19,8 +19,9 @@ namespace {
 
 using visibility::TriangleTree;
 
-/// Edges in a row, whose normals turn from one to the next, all together by `whole`, those of an edge by `own`; beside
-/// the plane of the turn by up to `beside`. Lengths and signs mean nothing.
+/// Returns edges in a row, whose normals turn from one edge to the next by `whole` in total; the two normals of an edge
+/// differ by `own`. Normals are off the plane of the turn by up to `beside`. Lengths and signs of normals must not
+/// matter.
 std::vector<EdgeRecord> turning(int count, double whole, double own, double beside) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -41,7 +42,7 @@ std::vector<EdgeRecord> turning(int count, double whole, double own, double besi
   return records;
 }
 
-/// A hierarchy, and its nodes' texels with the cones.
+/// A hierarchy, with the texels of its nodes, which hold the cones.
 struct EdgeTree {
   explicit EdgeTree(const std::vector<EdgeRecord>& records)
       : tree(edge_tree(records)), nodes(edge_texels(records, 1).nodes) {}
@@ -54,7 +55,7 @@ struct Found {
   double loosest_leaf = 0;
 };
 
-/// The records below a node.
+/// Returns the records below a node.
 std::vector<std::uint32_t> look_below(const EdgeTree& edges, const std::vector<EdgeRecord>& records, std::uint32_t node,
                                       Found& found) {
   std::vector<std::uint32_t> below_all;
@@ -100,7 +101,7 @@ TEST(EdgeCones, HoldTheNormalsOfAllEdgesBelow) {
       EXPECT_EQ(look_below(edges, records, 0, found).size(), records.size());
       EXPECT_GT(found.of_leaves, records.size() / 16);
       EXPECT_GT(found.joined, records.size() / 128);
-      // 2^-18 is taken off, and axis and cosine are rounded to float32.
+      // 2^-18 is subtracted, and axis and cosine are rounded to float32.
       EXPECT_LT(found.loosest_leaf, 0x1p-18 + 0x1p-22) << whole << ", " << beside;
     }
   }
@@ -109,12 +110,12 @@ TEST(EdgeCones, HoldTheNormalsOfAllEdgesBelow) {
 TEST(EdgeCones, OfNormalsAllOverAreNone) {
   const EdgeTree edges(turning(3000, 60, 0.05, 0));
   const auto is_all = [&](std::uint32_t child) { return std::bit_cast<float>(edges.nodes[3 * child + 2].number) <= 0; };
-  EXPECT_TRUE(is_all(0));  // at the root, where each child has a turn and more
+  EXPECT_TRUE(is_all(0));  // at the root, where the normals of each child cover more than one turn
   std::vector<EdgeRecord> open = turning(3000, 0.3, 0.05, 0);
-  open[1700].sides[1].n = glm::vec3(0);  // an edge of one triangle
+  open[1700].sides[1].n = glm::vec3(0);  // an edge with only one triangle
   Found found;
   look_below(EdgeTree(open), open, 0, found);
-  EXPECT_GE(found.all, 2U);  // its leaf, and each node on the way to it
+  EXPECT_GE(found.all, 2U);  // the edge's leaf, and each node above it
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges cut at a light's plane inside their hierarchy, on vector units and on the device: what the walk finds is what
-// cutting all records gives, and restoring leaves nothing behind.
+// Edges cut at a light's plane inside their hierarchy, on vector units and on the device: the walk finds the same edges
+// as cutting all records would give, and restoring leaves nothing behind.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 using visibility::TriangleTree;
 
-using Numbers = std::array<float, 20>;  // of an edge: ends, and normal, anchor, plane of each side
+using Numbers = std::array<float, 20>;  // of an edge: its ends, and normal, anchor and plane of each side
 
 Numbers numbers_of(const vectors::WideEdges& leaf, std::size_t lane) {
   Numbers numbers{};
@@ -34,7 +34,7 @@ Numbers numbers_of(const vectors::WideEdges& leaf, std::size_t lane) {
   return numbers;
 }
 
-/// All edges that a walk from the roots can reach, sorted.
+/// Returns all edges that a walk from the roots can reach, sorted.
 std::vector<Numbers> reachable(const vectors::WideEdgeTree& tree) {
   std::vector<Numbers> found;
   std::vector<std::uint32_t> stack = tree.roots;
@@ -57,7 +57,7 @@ std::vector<Numbers> reachable(const vectors::WideEdgeTree& tree) {
   return found;
 }
 
-/// All edges below a root of a hierarchy that is given as texels.
+/// Returns all edges below a root of a hierarchy that is given as texels.
 std::vector<Numbers> reachable(const EdgeTexels& texels, std::uint32_t root) {
   std::vector<Numbers> found;
   if (texels.depth == 0) return found;
@@ -93,7 +93,7 @@ std::vector<Numbers> reachable(const EdgeTexels& texels, std::uint32_t root) {
 std::vector<Numbers> reachable(const CutEdges& edges) {
   return reachable(edges.tree());
 }
-/// All edges of the hierarchy on the device, as far as its buffers are in use.
+/// Returns all edges of the hierarchy on the device, from the parts of its buffers that are in use.
 std::vector<Numbers> reachable(const EdgeUpload& edges) {
   EdgeTexels texels = edges.texels();
   const auto read = [](const render::Buffer& from, std::vector<visibility::Texel>& texels_to) {
@@ -104,7 +104,7 @@ std::vector<Numbers> reachable(const EdgeUpload& edges) {
   return reachable(texels, edges.root());
 }
 
-/// `make(records, scale)`: the hierarchy under test.
+/// `make(records, scale)` makes the hierarchy under test.
 template <typename Make>
 void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
   std::size_t cut = 0, third = 0, kept = 0;
@@ -123,7 +123,7 @@ void expect_cut_like_all_records(std::uint32_t soups, const Make& make) {
     auto edges = make(all, scale);
     const std::vector<Numbers> whole = reachable(edges);
     ASSERT_EQ(whole.size(), all.size());
-    for (int turn = 0; turn < 2; ++turn) {  // one light after the other: the second cuts what the first has cut
+    for (int turn = 0; turn < 2; ++turn) {  // one light after the other: the second cuts edges that the first has cut
       const visibility::Light light = visibility::make_light(scene, 0, floats.origin, request);
       const LightEdges asked = sides.prepare_light(light, visibility::make_device_light(light, scale), scale);
       for (const auto& side : {asked.front, asked.back}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shadow volumes against the exact count: at every pixel, the number of triangles that the open segment from p to the
-// light's centre meets, each triangle by itself, by exact predicates.
+// Shadow volumes compared with the exact count: at every pixel, the number of triangles that the open segment from p to
+// the light's centre meets, each triangle tested separately with exact predicates.
 
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
@@ -31,7 +31,7 @@ struct Counted {
   glm::vec3 center{0};
 };
 
-/// A scene as methods see it.
+/// A scene in the form that methods get.
 struct Picture {
   Picture(const scenes::Scene& scene, const render::Device& device, std::uint32_t width, std::uint32_t height,
           std::size_t camera = 0)
@@ -83,7 +83,7 @@ class HardVolume : public tests::DeviceTest {
     return result;
   }
 
-  /// Returns the hard count of a segment from exact decisions, triangle by triangle.
+  /// Returns the hard count of a segment by an exact decision for each triangle.
   static std::int32_t exact_count(const Picture& picture, std::size_t pixel, const glm::vec3& l) {
     const auto carrier = static_cast<std::uint32_t>(picture.samples.triangle[pixel]);
     const glm::vec3& p = picture.samples.p[pixel];
@@ -145,8 +145,8 @@ class HardVolume : public tests::DeviceTest {
     return tally;
   }
 
-  /// No pixel may differ, there must have been something to decide, and the rasterised faces must have decided it: what
-  /// they left to the host is at most 1 % (or another given share) of the pixels at a boundary.
+  /// Expects that no pixel differs, that there was something to decide, and that the rasterised faces decided it: they
+  /// left at most 1 % (or another given share) of the pixels at a boundary to the host.
   static void expect_exact(const std::string& name, const Picture& picture, double most_on_host = 0.01) {
     const Tally tally = compare(picture);
     fmt::print("{}: {} pixels counted, {} in shadow, {} at a boundary, largest count {}; {} counted on the host\n",
@@ -157,7 +157,7 @@ class HardVolume : public tests::DeviceTest {
   }
 
  private:
-  // Kept from picture to picture: making the passes costs more than a small picture.
+  // Kept between pictures: making the passes costs more than a small picture.
   static inline std::unique_ptr<VolumeCount> beyond_, before_;
 };
 
@@ -203,7 +203,7 @@ TEST_F(HardVolume, CountsAreExactWhereEverythingCoincides) {
   }
   fmt::print("{} pixels counted, {} on the host\n", counted, doubtful);
   EXPECT_GT(counted, 1000U);
-  EXPECT_GT(doubtful, 0U);  // or this test has missed what it is about
+  EXPECT_GT(doubtful, 0U);  // otherwise this test has missed its purpose
 }
 
 /// The occluder's shadow on the floor is the square, scaled by two from the light's centre: a closed form.
@@ -243,7 +243,7 @@ scenes::Scene stack(int layers, const glm::dvec3& eye) {
   return scene;
 }
 
-/// Volumes are looked for where a shifted lens shows them.
+/// Volumes are searched in the part of the scene that a shifted lens shows.
 TEST_F(HardVolume, AShiftedLens) {
   for (const glm::dvec2& shift : {glm::dvec2(0.35, -0.2), glm::dvec2(-0.5, 0.15)}) {
     scenes::Scene scene = stack(3, {2, 1.5, 2});
@@ -251,7 +251,7 @@ TEST_F(HardVolume, AShiftedLens) {
                      right = glm::normalize(glm::cross(forward, scene.cameras[0].up));
     const double height = 2 * std::tan(glm::radians(35.0));
     scene.cameras[0].shift = shift;
-    // Turned the other way, so that the middle stays in sight.
+    // The camera turns the other way, so that the middle stays in sight.
     scene.cameras[0].target =
         scene.cameras[0].eye + forward - height * shift.x * right - height * shift.y * glm::cross(right, forward);
     const Tally tally = compare(Picture(scene, device(), 48, 36));
@@ -262,7 +262,8 @@ TEST_F(HardVolume, AShiftedLens) {
 }
 
 TEST_F(HardVolume, ACountOf256DoesNotWrap) {
-  for (const int layers : {255, 256, 257, 600}) {  // 512 triangles in 256 layers; each segment meets one of two
+  for (const int layers :
+       {255, 256, 257, 600}) {  // 512 triangles in 256 layers; each segment meets one of the two in a layer
     const Picture picture(stack(layers, {2, 1.5, 2}), device(), 48, 36);
     const Tally tally = compare(picture);
     EXPECT_EQ(tally.wrong, 0U) << tally.first_wrong;
@@ -275,7 +276,7 @@ TEST_F(HardVolume, TheCameraMayBeInAVolume) {
   const Counted beyond = run(picture), before = run(picture, CountVariant::z_pass);
   const std::vector<std::int32_t> exact = exact_counts(picture, beyond.center);
   EXPECT_EQ(beyond.counts, exact);
-  // z-pass starts from 0 at the camera, which is in three volumes: every count is too small by three.
+  // z-pass starts from 0 at the camera, which is inside three volumes: every count is too small by three.
   std::size_t counted = 0, in_shadow = 0, lit = 0;
   for (std::size_t pixel = 0; pixel < exact.size(); ++pixel) {
     if (beyond.kinds[pixel] != Kind::counted) continue;
@@ -290,7 +291,7 @@ TEST_F(HardVolume, TheCameraMayBeInAVolume) {
   EXPECT_GT(lit, 100U);
 }
 
-/// A camera that looks in the light's direction sees the far ends of volumes: directions in which the shadow never
+/// A camera that looks along the light's direction sees the far ends of volumes: directions in which the shadow never
 /// ends.
 TEST_F(HardVolume, TheFarEndIsCounted) {
   const scenes::Scene broken = tests::with_a_floor(mesh::make_broken_mesh({{"hole", "fin"}, 2, {0, 1.5, 0}, 1}).soup);
@@ -304,8 +305,8 @@ TEST_F(HardVolume, TheFarEndIsCounted) {
   }
 }
 
-/// Meshes so close that p, rounded to float32, moves by a part of a pixel and often past an edge of its triangle: the
-/// carrier and what is coplanar with it must still not be counted, and its neighbours must be counted exactly.
+/// Meshes so close that p, rounded to float32, moves by part of a pixel and often across an edge of its triangle: the
+/// carrier and triangles coplanar with it must still not be counted, and its neighbours must be counted exactly.
 TEST_F(HardVolume, CloseUpsWhereRoundingMovesPoints) {
   for (const double cell : {1.6e-5, 4e-6}) {
     const glm::dvec3 middle(1.3, 0.7, -0.4);
@@ -342,7 +343,7 @@ TEST_F(HardVolume, ZPassIsExactWhereTheCameraIsLit) {
 }
 
 TEST_F(HardVolume, FacesThroughTheEyeDoNoHarm) {
-  // The eye on a side face of the volumes, on an edge, and on a cap's plane.
+  // The eye is on a side face of the volumes, on an edge, and in a cap's plane.
   for (const glm::dvec3& eye :
        {glm::dvec3(0.625, 0.25, 0.25), glm::dvec3(0.5, 1, 0.25), glm::dvec3(2, 1, 2), glm::dvec3(0, 3.5, 0.125)}) {
     scenes::Scene scene = stack(2, eye);
@@ -376,10 +377,10 @@ TEST_F(HardVolume, DisksEllipsesAndPolygonsHaveACenterToo) {
   expect_exact("disk", disk);
   scene.lights[0].shape = scenes::Ellipse{{0.25, 4, 0}, {0.5, 0, 0}, {0, 0, 0.25}};
   const Picture ellipse(scene, device(), 48, 36);
-  EXPECT_EQ(run(ellipse).counts, run(disk).counts);                            // of the same centre
+  EXPECT_EQ(run(ellipse).counts, run(disk).counts);                            // they have the same centre
   scene.lights[0].shape = scenes::Polygon{{{0, 4, 0}, {3, 4, 0}, {0, 4, 3}}};  // centroid (1, 4, 1)
   const Picture polygon(scene, device(), 48, 36);
-  // Rounded to float32, and the corners before: a few times 2⁻²⁴ · 4.
+  // Both the result and the corners are rounded to float32: a few times 2⁻²⁴ · 4.
   EXPECT_NEAR(glm::length(glm::dvec3(run(polygon).center) + polygon.floats.origin - glm::dvec3(1, 4, 1)), 0, 1e-6);
   expect_exact("polygon", polygon);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Variants of hard-volume that cost less: V is the default's at every pixel, and what they leave out is what their
-// papers say.
+// Variants of hard-volume that cost less: V is the default's at every pixel, and they save what their papers say.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/volumes/soft_stage.hpp"
@@ -37,7 +36,7 @@ class HardVolumeVariants : public tests::DeviceTest {
     DeviceTest::TearDownTestSuite();
   }
 
-  /// Returns the answers of all variants, with the default first.
+  /// Runs all variants, and returns their answers.
   static std::map<std::string, Answer> expect_same(const std::string& name, const SoftStage& stage) {
     std::map<std::string, Answer> answers{{"z-fail", run(stage, "z-fail")}};
     for (const char* variant : kVariants) {
@@ -77,7 +76,8 @@ TEST_F(HardVolumeVariants, HideWhatTheDefaultHidesFull) {
   }
 }
 
-/// Soups where nothing is closed, and triangles lie on one another, in planes of the light, the eye and the receivers.
+/// Soups in which nothing is closed, with triangles that lie on one another and in planes of the light, the eye and the
+/// receivers.
 TEST_F(HardVolumeVariants, HideTheSameOfOpenSoups) {
   for (const char* defect : {"hole", "flipped-patch", "duplicate-face"}) {
     const scenes::Scene scene = tests::with_a_floor(mesh::make_broken_mesh({{defect}, 2, {0, 1, 0}, 1}).soup);
@@ -99,7 +99,7 @@ TEST_F(HardVolumeVariants, HideTheSameInTiles) {
   }
 }
 
-/// The camera in two shadows, where z-pass alone is wrong.
+/// The camera is in two shadows, where z-pass alone is wrong.
 TEST_F(HardVolumeVariants, HideTheSameFromWithinShadows) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   tests::add_object(scene, "board", tests::quad({0, 2, 0}, {0.8, 0, 0}, {0, 0, -0.8}));
@@ -108,11 +108,12 @@ TEST_F(HardVolumeVariants, HideTheSameFromWithinShadows) {
   const SoftStage stage(scene, device(), 48, 36);
   const auto answers = expect_same("in two shadows", stage);
   EXPECT_NE(run(stage, "z-pass").visibility, answers.at("z-fail").visibility);
-  // The eye is in both boards' volumes, and rays beyond p end in the floor's.
+  // The eye is inside both boards' volumes, and rays beyond p end inside the floor's volume.
   EXPECT_EQ(answers.at("split").counters.at("togglingVolumes"), 0U);
 }
 
-/// A board that another one hides from the light altogether has no volume; a third one has, as far down as the floor.
+/// A board that another board hides completely from the light has no volume; a third board has a volume, which ends at
+/// the floor.
 TEST_F(HardVolumeVariants, CullCastersInShadow) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   tests::add_object(scene, "upper", tests::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}));
@@ -124,12 +125,12 @@ TEST_F(HardVolumeVariants, CullCastersInShadow) {
   EXPECT_EQ(cc.at("culledVolumes"), 2U);  // the hidden board's and, as nothing is below it, the floor's
   EXPECT_EQ(cc.at("clampedVolumes"), 2U);
   EXPECT_EQ(cc.at("silhouetteEdges"), 8U * cc.at("stretches") / 2);
-  // The hidden board still hides something if view samples alone decide: floor below it.
+  // If only view samples decide, the hidden board still hides something: the floor below it.
   EXPECT_EQ(answers.at("hierarchical").counters.at("culledVolumes"), 2U);  // the floor's two triangles
 }
 
 /// A board's shadow on a floor is a square, here of half-width 5/3. Tiles whose view samples are all on one of the two
-/// surfaces are whole, except where their box meets the square's outline.
+/// surfaces are decided as a whole, except where their box meets the square's outline.
 TEST_F(HardVolumeVariants, DecideWholeTiles) {
   scenes::Scene scene = tests::floor_and_light(0.5);
   tests::add_object(scene, "board", tests::quad({0, 2, 0}, {1, 0, 0}, {0, 0, -1}));
@@ -167,8 +168,8 @@ TEST_F(HardVolumeVariants, DecideWholeTiles) {
   EXPECT_LT(counters.at("countUpdates"), answers.at("z-fail").counters.at("countUpdates"));
 }
 
-/// Promises of the papers, in sums over scenes: fewer changes of counts between the eye and p than beyond it, or on the
-/// side that suits p; fewer fragments where volumes are culled and clamped.
+/// Tests the papers' promises in sums over scenes: fewer changes of counts between the eye and p than beyond p, or on
+/// the better side of p; fewer fragments if volumes are culled and clamped.
 TEST_F(HardVolumeVariants, FillLess) {
   std::map<std::string, std::uint64_t> fragments, updates;
   for (const char* name : {"fusion", "room"}) {
@@ -188,7 +189,8 @@ TEST_F(HardVolumeVariants, FillLess) {
   EXPECT_LT(fragments["hierarchical"], fragments["z-fail"]);
 }
 
-/// Cells hold what they say: directions to points of a triangle are in its block, at depths within its plane's.
+/// The contents of cells are conservative: directions to points of a triangle are in its block, at depths within those
+/// of its plane.
 TEST_F(HardVolumeVariants, CellsAreConservative) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> place(-2, 2), share(0, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// depth-complexity variant=forest against its twins and exact predicates: every counter, and what happens where there
-// is none.
+// Tests depth-complexity variant=forest against its twins and exact predicates: every counter, and pixels without a
+// valid counter.
 
 #include "tests/agreement/volumes/packed_counters.hpp"
 
@@ -47,7 +47,7 @@ class Packed : public tests::DeviceTest {
 visibility::SampleRequest request_of(std::uint32_t i) {
   using visibility::SamplePattern;
   const SamplePattern patterns[] = {SamplePattern::rows, SamplePattern::sobol, SamplePattern::jittered};
-  const std::uint32_t counts[] = {16, 45, 16, 11};  // 45: two passes, the second not full
+  const std::uint32_t counts[] = {16, 45, 16, 11};  // 45 takes two passes, the second one incomplete
   return {counts[i % 4], 0, 0, patterns[i % 3], i};
 }
 
@@ -67,7 +67,7 @@ bool reaches_through(const InputError& error) {
   return tests::says(error, "reaches through it, which depth-complexity variant=forest cannot count");
 }
 
-/// Lattice soups; `range` as in LatticeSoup. Scenes that reach through their light are refused.
+/// Tests lattice soups; `range` as in LatticeSoup. Scenes with triangles that reach through their light are refused.
 std::size_t lattice_soups(PackedTotals& totals, std::uint64_t& open, DepthCounters& method, int range,
                           std::uint32_t count) {
   std::size_t refused = 0;
@@ -110,7 +110,7 @@ TEST_F(PackedFull, LatticeSoups) {
   EXPECT_GT(totals_.known, 50000U);
 }
 
-/// Triangles all around lights of every kind, most of them in general position.
+/// Triangles all around lights of every kind, mostly in general position.
 TEST_F(Packed, SoupsAroundEveryKindOfLight) {
   std::size_t refused = 0;
   for (std::uint32_t seed = 0; seed < 24; ++seed) {
@@ -144,11 +144,11 @@ TEST_F(Packed, SoupsAroundEveryKindOfLight) {
   say();
   fmt::print("{} of 24 refused\n", refused);
   EXPECT_LT(refused, 18U);
-  EXPECT_LT(open_, totals_.pairs / 100);  // in general position hardly a sign is in doubt
+  EXPECT_LT(open_, totals_.pairs / 100);  // in general position hardly any sign is in doubt
   EXPECT_GT(totals_.too_bright, 0U);      // the paper's approximation shows
 }
 
-/// Occluders whose planes all miss the light: all of the light sees the same silhouettes.
+/// Occluders whose planes all miss the light: all points of the light see the same silhouettes.
 scenes::Scene boards() {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));
@@ -157,7 +157,7 @@ scenes::Scene boards() {
   std::vector<tests::Corners> doubled = tests::quad({-1.2, 0.9, 0.4}, {0.5, 0, 0}, {0, 0, -0.5});
   for (const auto& [a, b, c] : std::vector(doubled)) doubled.push_back({a, c, b});
   tests::add_object(scene, "closed and flat", doubled);
-  // The tetrahedron's three upper faces turn to every point of the light, its base to none.
+  // The tetrahedron's three upper faces face every point of the light, its base faces none.
   const glm::dvec3 top{1.5, 1.1, -0.8}, a{1.1, 0.9, -0.5}, b{1.9, 0.9, -0.5}, c{1.5, 0.9, -1.3};
   tests::add_object(scene, "tetrahedron", {{a, b, top}, {b, c, top}, {c, a, top}, {a, c, b}});
   scene.lights.push_back(tests::rectangle_light({0.2, 5, 0.1}, {0.6, 0.02, 0.05}, {0.01, 0.03, 0.6}));
@@ -181,7 +181,7 @@ TEST_F(Packed, BoardsAreExact) {
   }
 }
 
-/// `count` boards in one place: they have three edges, each of multiplicity `count`.
+/// `count` boards in one place: together they have edges of multiplicity `count`.
 scenes::Scene stack(std::uint32_t count) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {5, 0, 0}, {0, 0, -5}));
@@ -192,7 +192,8 @@ scenes::Scene stack(std::uint32_t count) {
   return scene;
 }
 
-/// Every bit is edge-scatter's at the same light samples, in one pass of 32 and in several, the last one full or not.
+/// Every bit equals that of edge-scatter for the same light samples, in one pass of 32 and in several, the last one
+/// full or not.
 TEST_F(Packed, BoardsAreExactAtAnyNumberOfLightSamples) {
   const auto scatter = make_edge_scatter(device(), {});
   std::uint32_t seed = 0;
@@ -209,7 +210,8 @@ TEST_F(Packed, BoardsAreExactAtAnyNumberOfLightSamples) {
   }
 }
 
-/// The light samples in the opposite order are in other passes, beside other counters: each keeps its bit.
+/// With the light samples in the opposite order, they are in other passes, next to other counters: each must keep its
+/// bit.
 TEST_F(Packed, NoBitDependsOnThePass) {
   for (const bool overflows : {false, true}) {
     const auto method = make_packed_counters(device(), {.counter_bits = 6});
@@ -236,8 +238,8 @@ TEST_F(Packed, NoBitDependsOnThePass) {
   }
 }
 
-/// A sheet in shallow pleats, turned so that view samples are off its planes by more than rounding, under light along
-/// the sheet: ways to the light pass through planes of carriers, past edges that are no silhouettes.
+/// A sheet in shallow pleats, tilted so that view samples are off its planes by more than rounding, under light along
+/// the sheet: segments to the light pass through planes of carriers, past edges that are no silhouettes.
 TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
   const glm::dvec3 u = glm::normalize(glm::dvec3(0.8, 0.31, -0.23)),
                    v = glm::normalize(glm::cross(u, glm::dvec3(0.17, 0.9, 0.41))), n = glm::cross(v, u);
@@ -252,7 +254,8 @@ TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
   }
   scenes::Scene scene;
   tests::add_object(scene, "pleats", sheet);
-  tests::add_object(scene, "far away", tests::quad(-60.0 * n, u, v));  // the origin is half-way: coarse floats
+  tests::add_object(scene, "far away",
+                    tests::quad(-60.0 * n, u, v));  // puts the origin half way there, so that floats are coarse
   scene.lights.push_back(tests::rectangle_light(4.0 * u + 0.03 * n, 0.5 * v, 0.028 * n));
   scene.lights[0].two_sided = true;
   scene.cameras.push_back(tests::camera(2.5 * n + 0.1 * u, {0, 0, 0}, 40));
@@ -262,7 +265,7 @@ TEST_F(Packed, RoundedOffTheCarrierUnderGrazingLight) {
   EXPECT_GT(found.known, found.pairs / 10);
 }
 
-/// A ball: too bright where the light's corners see past the centre's silhouette, never too dark.
+/// A ball is too bright where the light's corners see past the centre's silhouette, and never too dark.
 TEST_F(Packed, ABallIsTooBright) {
   const PackedTotals found = check("ball", tests::with_a_floor(mesh::make_icosphere({0, 1.2, 0}, 0.8, 2)), 48, 36,
                                    {16, 0, 0, visibility::SamplePattern::rows, 0}, 30);
@@ -272,7 +275,7 @@ TEST_F(Packed, ABallIsTooBright) {
 }
 
 void expect_overflow(const render::Device& device, std::uint32_t bits, std::uint32_t size) {
-  // A digit of 2^bits is 0: unguarded, the umbra that the centre is not in would be lit.
+  // Modulo 2^bits the counter is 0: without a guard, an umbra that does not contain the centre's shadow would be lit.
   const auto method = make_packed_counters(device, {.counter_bits = bits});
   for (const std::uint32_t count : {((1U << (bits - 1)) - 1) / 3, 1U << bits}) {
     const Stage stage(stack(count), size, size, {16, 0, 0, visibility::SamplePattern::rows, 0});
@@ -289,8 +292,8 @@ TEST_F(Packed, OverflowIsSeenAndSetRight) {
   expect_overflow(device(), 6, 24);
   expect_overflow(device(), 8, 24);
 }
-/// A counter with as=published that edges change by 2^bits is what it was: all of the light is visible where the
-/// light's centre is. Both variants are the same where nothing overflows.
+/// With as=published, a counter that edges change by 2^bits has its old value: all of the light is visible where the
+/// light's centre is. Where nothing overflows, both variants give the same.
 TEST_F(Packed, AsPublishedOverflowLetsLightThrough) {
   for (const std::uint32_t bits : {6U, 8U}) {
     const auto published = make_packed_counters(device(), {.counter_bits = bits, .as_published = true}),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wedges of random and of awkward edges: every plane is proved, exactly, to contain the penumbra; points of it are
-// inside; and the bound is as small as its construction promises.
+// Tests wedges of random and of awkward edges: every plane is proved, exactly, to bound the penumbra; points of the
+// penumbra are inside; and the bound is as small as its construction promises.
 
 #include "volumes/wedges/penumbra_wedge.hpp"
 
@@ -19,7 +19,7 @@ class Random {
   explicit Random(std::uint32_t seed) : engine_(seed) {}
   std::uint32_t below(std::uint32_t end) { return static_cast<std::uint32_t>(engine_() % end); }
   double real(double size = 1) { return std::uniform_real_distribution<double>(-size, size)(engine_); }
-  /// A point in float32, as scenes store them.
+  /// Returns a point in float32, as scenes store them.
   glm::dvec3 point(double size = 1) { return glm::dvec3(glm::vec3(glm::dvec3(real(size), real(size), real(size)))); }
   glm::dvec3 lattice_point(std::uint32_t range) {
     const auto one = [&] { return static_cast<double>(below(2 * range + 1)) - range; };
@@ -44,7 +44,7 @@ LightHull disk(const glm::dvec3& center, const glm::dvec3& u, const glm::dvec3& 
   return hull;
 }
 
-/// A point of the penumbra of a b: x + t (x − l).
+/// Returns a point of the penumbra of the edge a b: x + t (x − l).
 glm::dvec3 point_of_penumbra(const Wedge& wedge, const LightHull& light, Random& random) {
   glm::dvec3 l(0);
   double weight = 0;
@@ -126,7 +126,7 @@ TEST_P(Wedges, ContainThePenumbra) {
       }
       for (int i = 0; i < 20 && wedge.outcome == WedgeOutcome::wedge; ++i) {
         const glm::dvec3 p = point_of_penumbra(wedge, light, random);
-        // p is rounded: within 2⁻⁵¹ of where it should be, so as far inside or outside.
+        // p is rounded: it is within 2⁻⁵¹ of its exact place, so it may be outside by as much.
         for (const Plane& plane : wedge.planes) {
           const double h = glm::dot(plane.normal(), p) + plane.d;
           ASSERT_GT(h, -0x1p-45 * (glm::length(p) + std::abs(plane.d) + 10)) << "edge " << wedge.source;
@@ -147,7 +147,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Wedges,
                            return (std::get<0>(test.param) == Construction::tight ? "tight_" : "original_") + name;
                          });
 
-/// Prints how often each outcome occurs, and checks what the header promises.
+/// Prints how often each outcome occurs, and checks the promises of the header.
 TEST(WedgeOutcomes, AsDocumented) {
   Random random(2);
   for (const Case& c : kCases) {
@@ -179,8 +179,8 @@ TEST(WedgeOutcomes, AsDocumented) {
   EXPECT_EQ(one({0, 1, 0}, {0, 2, 0}, Construction::tight), WedgeOutcome::wedge) << "points at the light";
 }
 
-/// The penumbra of the edge x ∈ [−1, 1] one below a square light of half-size ½ is convex: at depth d it reaches to
-/// x = ±(1 + (1 + ½) d), z = ±½ d.
+/// The penumbra of the edge x ∈ [−1, 1], 1 below a square light of half-size ½, is convex: at depth d it reaches to x =
+/// ±(1 + (1 + ½) d), z = ±½ d.
 TEST(WedgeOutcomes, TheTightWedgeOfAParallelEdgeIsItsPenumbra) {
   const WedgeEdge edge{{-1, 0, 0}, {1, 0, 0}, {}};
   const LightHull light = rectangle({0, 1, 0}, {0.5, 0, 0}, {0, 0, 0.5});

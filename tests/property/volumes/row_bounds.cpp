@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measures how much rows=exact ever uses of its bounds of the places of an edge's ends: searches for the input that
-// uses most, held against exact places (rational numbers).
+// Measures how much of its bounds for the ends of edges rows=exact ever uses: searches for the input that uses most,
+// compared with exact places (rational numbers).
 
 #include "tests/property/volumes/row_cases.hpp"
 #include "tests/property/volumes/under_a_light.hpp"
@@ -40,7 +40,7 @@ class ExactLight {
     squared_ = 2 * dot(normal_, normal_);
   }
 
-  /// Returns the place at which x appears to p, in cells from the corner; nothing if it is not above p and below the
+  /// Returns the place at which x appears to p, in cells from the corner; nullopt unless it is above p and below the
   /// light.
   [[nodiscard]] std::optional<std::array<mpq_class, 2>> operator()(const glm::dvec3& p, const glm::dvec3& x) const {
     const Rational from = rational(p) - corner_, direction = rational(x) - rational(p);
@@ -57,8 +57,8 @@ class ExactLight {
   Rational corner_, normal_, across_, along_;
 };
 
-/// |place as computed − place| over its bound, the worse of two ends and two axes. (docs/edge-scatter.md, "What double
-/// proves": foot, segment, place)
+/// Returns |computed place − place| over its bound, the worse of two ends and two axes. (docs/edge-scatter.md, "What
+/// double proves": foot, segment, place)
 Use use_of(const Case& of) {
   tests::UnderALight under(of.scene, 16);
   const auto placed = under.place({of.p});
@@ -77,7 +77,7 @@ Use use_of(const Case& of) {
     const auto place = exact(glm::dvec3(p), glm::dvec3(end == 0 ? a : b));
     if (!place) return {};
     for (std::size_t axis = 0; axis < 2; ++axis) {
-      // Edges outside of a window of twice the light are cut to it.
+      // Edges outside a window twice as large as the light are cut to it.
       if (abs((*place)[axis] - 8) > 17) return {};
       const mpq_class off = mpq_class(computed.at(end)[static_cast<glm::length_t>(axis)]) - (*place)[axis];
       const double error = std::abs(off.get_d());
@@ -87,8 +87,8 @@ Use use_of(const Case& of) {
   return worst;
 }
 
-/// A corner of an edge: at `share` of the segment from p to a place of the light's plane, in half sides from its
-/// centre.
+/// Returns a corner of an edge: at `share` of the segment from p to a place in the light's plane, given in half sides
+/// from the light's centre.
 glm::vec3 on_the_way(const Case& of, const glm::dvec2& place, double share) {
   const auto& light = std::get<scenes::Rectangle>(of.scene.lights[0].shape);
   const glm::dvec3 target = light.center + place.x * light.half_u + place.y * light.half_v;
@@ -111,8 +111,8 @@ Case anywhere(tests::Numbers numbers) {
   return of;
 }
 
-/// p just under a wide light of skew sides and far from its corner, an edge straight over p: what is off is where p is
-/// seen from the corner.
+/// p is just under a wide skew light and far from its corner, with an edge straight above p: the largest error is in
+/// the direction to p as seen from the corner.
 Case close_under_a_wide_light(tests::Numbers numbers) {
   Case of = on_a_floor(numbers.vector());
   const double low = std::exp2(-2 - 10 * numbers.next()), narrow = std::exp2(-10 * numbers.next());
@@ -137,7 +137,7 @@ TEST(RowBounds, WherePIsSeen) {
   expect_within("foot", search(close_under_a_wide_light, use_of), 0.01);
 }
 
-/// An edge is placed side by side with others or by itself: the same place, and the same error.
+/// An edge has the same place and the same error whether it is placed alone or side by side with others.
 TEST(RowBounds, SideBySideIsTheSame) {
   std::mt19937 random(2);
   std::size_t placed = 0;
@@ -153,7 +153,7 @@ TEST(RowBounds, SideBySideIsTheSame) {
     rows.set_view_sample(at->front());
     const std::array ends{of.edge[0] * under.scale, of.edge[1] * under.scale};
     WidePlaces places;
-    const std::size_t lane = places.count = random() % WidePlaces::kMost;  // others are at zero
+    const std::size_t lane = places.count = random() % WidePlaces::kMost;  // the other lanes are zero
     ++places.count;
     for (std::size_t i = 0; i < 3; ++i) {
       places.a[i][lane] = ends[0][static_cast<glm::length_t>(i)];

@@ -50,7 +50,7 @@ struct Case {
   std::array<glm::vec3, 2> edge{};
 };
 
-/// An edge of one triangle, which p is well in front of, in another plane than its own.
+/// Returns an edge with one triangle; p is clearly in front of that triangle, whose plane is not p's own.
 inline WideEdges in_front_of(const glm::vec3& p, const std::array<glm::vec3, 2>& edge, std::uint32_t plane) {
   WideEdges leaf{};
   const glm::vec3 n = p - edge[0];
@@ -64,7 +64,7 @@ inline WideEdges in_front_of(const glm::vec3& p, const std::array<glm::vec3, 2>&
   return leaf;
 }
 
-/// A small floor, and p on it: bounds grow with the scene's largest coordinate.
+/// Returns a small floor with p on it: bounds grow with the scene's largest coordinate.
 inline Case on_a_floor(const glm::dvec3& at) {
   Case of;
   of.scene.origin = glm::dvec3(0);
@@ -85,7 +85,8 @@ inline Use search(const std::function<Case(tests::Numbers)>& make, Use (*use)(co
   return use(make(most));
 }
 
-/// Prints and records how much of a bound was used: less than all, and more than planted_faults leaves of it.
+/// Prints and records how much of a bound was used: it must be less than all of it, but more than remains if
+/// planted_faults cuts the bound.
 inline void expect_within(const char* name, const Use& most, double planted) {
   fmt::print("{}: {:.1f} % of the bound used (off by {:.2e} cells, allowed {:.2e})\n", name, 100 * most.of_bound,
              most.error, most.bound);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sweep of rows=exact by itself: the area that no triangle covers does not depend on the direction of the rows.
+// Tests the sweep of rows=exact by itself: the area that no triangle covers does not depend on the direction of the
+// rows.
 
 #include "volumes/scatter/vectors/row_sweep.hpp"
 
@@ -22,7 +23,7 @@ double twice_area(const Triangle& t) {
   return (t[1].x - t[0].x) * (t[2].y - t[0].y) - (t[1].y - t[0].y) * (t[2].x - t[0].x);
 }
 
-/// Triangles as layers: inside one, of either winding, there is one layer more.
+/// Returns triangles as layers: inside a triangle, of either winding, there is one layer more.
 std::vector<RowEdge> outlines(std::span<const Triangle> triangles) {
   std::vector<RowEdge> edges;
   for (const Triangle& triangle : triangles) {
@@ -56,8 +57,8 @@ std::vector<Triangle> quarter_turned(std::vector<Triangle> triangles) {
   return triangles;
 }
 
-/// Nearly everything coincides with something on a lattice: corners with edges, edges with edges, three lines in one
-/// point. Off the lattice, needles have every width.
+/// On a lattice nearly everything coincides: corners with edges, edges with edges, three lines in one point. Off the
+/// lattice, needles have every width.
 TEST(RowSweep, TheDirectionOfRowsDoesNotMatter) {
   std::mt19937 random(1);
   double least = 1, most = 0;
@@ -71,7 +72,8 @@ TEST(RowSweep, TheDirectionOfRowsDoesNotMatter) {
       if (round % 3 == 0) triangle[2] = 0.999999 * triangle[1] + 1e-6 * triangle[2];
     }
     const Measured first = measure(triangles);
-    // Each end of a trapezoid is off by a few ulps of the side; a triangle has few, but all pairs may cross.
+    // Each end of a trapezoid is off by a few ulps of the side; a triangle has few ends, but all pairs of edges may
+    // cross.
     const double tolerance = 1e-15 * kSide * kSide * static_cast<double>(triangles.size() * triangles.size() + 16);
     for (int turn = 0; turn < 4; ++turn) {
       const Measured turned = measure(triangles);
@@ -87,7 +89,7 @@ TEST(RowSweep, TheDirectionOfRowsDoesNotMatter) {
   EXPECT_GT(most, 0.99);
 }
 
-/// Hierarchies list edges in any order: no digit depends on it.
+/// Hierarchies list edges in any order: no digit of the result depends on it.
 TEST(RowSweep, TheOrderOfEdgesDoesNotMatter) {
   std::mt19937 random(2);
   std::uniform_int_distribution<int> place(0, 6);
@@ -106,9 +108,10 @@ TEST(RowSweep, TheOrderOfEdgesDoesNotMatter) {
   }
 }
 
-/// Edges on one line, which rounding tells from one another in their last digits alone: where they cross is anywhere,
-/// also below where they begin. Each end of a gap is off by 24 · 2⁻⁵³ of the square at most (RowSweep); twelve edges
-/// have up to 66 crossings and 24 ends, at each of which three gaps end, and both ways are measured: 9.2e-11.
+/// Edges on one line, which after rounding differ only in their last digits: their computed crossings are anywhere,
+/// also below the edges' beginnings. Each end of a gap is off by at most 24 · 2⁻⁵³ of the square (RowSweep); twelve
+/// edges have up to 66 crossings and 24 ends, at each of which three gaps end, and both directions are measured:
+/// 9.2e-11.
 TEST(RowSweep, EdgesOnOneLine) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> share(0, 1);
@@ -128,7 +131,8 @@ TEST(RowSweep, EdgesOnOneLine) {
   }
 }
 
-/// Two of these lines crossed far below where they begin, by the quotient of two roundings: 73.08 in place of 63.97.
+/// Two of these lines seemed to cross far below their beginnings, by the quotient of two rounding errors: 73.08 in
+/// place of 63.97.
 TEST(RowSweep, LinesThatCrossedLongAgo) {
   std::vector<RowEdge> edges{
       {0x1.9bb14642ea861p+2, 0x1.c905bb0a32929p+2, 0x1.b76300bbcf031p+2, 0x1.e6e8a4ae8fd7cp+2, 1},
@@ -151,7 +155,7 @@ TEST(RowSweep, OneTriangleLeavesTheRest) {
   EXPECT_NEAR(measure(doubled).area.visible, kSide * kSide - 0.5 * twice_area(triangle), 1e-13);
 }
 
-/// The depth at the left side goes up and down again: a strip is dark.
+/// The depth at the left side goes up and down again: one strip is dark.
 TEST(RowSweep, StepsAtTheLeftSide) {
   std::vector<RowEdge> edges{{0, 2, 8, 2.5, 1}, {0, 4, 8, 5.5, -1}};
   std::vector<RowStep> steps{{4, -1}, {2, 1}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The device's silhouettes against mesh/silhouettes: the same edges, multiplicities and order, also where every second
-// facing is a tie.
+// Compares the device's silhouettes with mesh/silhouettes: the same edges, multiplicities and order, also where every
+// second facing is a tie.
 
 #include "tests/agreement/support.hpp"
 
@@ -26,7 +26,8 @@ class SilhouettePassTest : public tests::DeviceTest {
  protected:
   SilhouettePassTest() : pass_(device()) {}
 
-  /// Expects exact silhouettes from all points: first every side that a triangle is seen from counts, then only some.
+  /// Expects exact silhouettes from all points: first with both sides of every triangle counted, then with only some
+  /// sides.
   void expect_exact(const std::string& name, const Mesh& mesh, const std::vector<glm::vec3>& points) {
     ASSERT_TRUE(pass_.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph}));
     std::vector<std::uint32_t> all(mesh.triangles.size(), gpu::kBothBits), some(all);
@@ -40,7 +41,7 @@ class SilhouettePassTest : public tests::DeviceTest {
     EXPECT_EQ(pass_.read_edges(), last) << name << ": once more";
   }
 
-  /// Facings alone; returns how many of them the device left to the host.
+  /// Tests facings alone; returns how many of them the device left to the host.
   std::uint64_t expect_facings(const std::string& name, const Mesh& mesh, const std::vector<glm::vec3>& points) {
     EXPECT_TRUE(pass_.prepare_mesh({mesh.positions, mesh.triangles, &mesh.graph}));
     const std::vector<std::uint32_t> none(mesh.triangles.size(), 0U);
@@ -105,10 +106,10 @@ TEST_F(SilhouettePassTest, EveryDefect) {
   EXPECT_GT(tally_.ties, 100U);
 }
 
-/// Points of the lattice are on most planes through it.
+/// Points of the lattice lie in most of the planes through it.
 TEST_F(SilhouettePassTest, LatticeSoups) {
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
-    // A tilt by a third keeps most of the products from being exact: then ties are the host's.
+    // A tilt by a third makes most of the products inexact: then ties are left to the host.
     const Mesh mesh(mesh::make_lattice_soup({100 * seed, 1 + seed % 5, seed, glm::dvec3(0), 2}),
                     seed % 2 ? 1 : 1 / 3.0);
     std::vector<glm::vec3> points(mesh.positions.begin(), mesh.positions.begin() + 6);
@@ -122,7 +123,7 @@ TEST_F(SilhouettePassTest, LatticeSoups) {
 }
 
 TEST_F(SilhouettePassTest, TiesOnAxisAlignedPlanesNeedNoHost) {
-  // Level and upright triangles, points of a lattice: nothing but exact products and exact zeros.
+  // Level and upright triangles, points of a lattice: only exact products and exact zeros.
   std::mt19937 random(3);
   std::uniform_int_distribution<int> step(-5, 5);
   std::vector<glm::vec3> points(60);
@@ -164,7 +165,7 @@ std::vector<glm::vec3> many(std::size_t count, const std::function<glm::vec3()>&
 }
 
 TEST_F(SilhouettePassTest, FacingsWithMagnitudesMixedInOneMesh) {
-  // Values from the least subnormal to the largest float side by side, in corners and points alike.
+  // Values from the smallest subnormal to the largest float next to each other, in corners and points alike.
   const std::array<float, 14> values = {0,       -0.0F, 1,      -1,       1.5F,      1 + 0x1p-23F, 1e-20F,
                                         -1e-20F, 1e15F, -1e15F, 0x1p-80F, 0x1p-126F, 0x1p-149F,    3e38F};
   std::mt19937 random(5);
@@ -179,7 +180,7 @@ TEST_F(SilhouettePassTest, FacingsWithMagnitudesMixedInOneMesh) {
 }
 
 TEST_F(SilhouettePassTest, FacingsOfNearlyCoplanarTriangles) {
-  // Triangles of one tilted plane and points on it, each height rounded or moved by an ulp: most are left open.
+  // Triangles of one tilted plane and points on it, each height rounded or moved by an ulp: most are left to the host.
   std::mt19937 random(6);
   std::uniform_real_distribution<float> draw(-1, 1);
   std::uniform_int_distribution<int> draw_step(-1, 1);
@@ -192,7 +193,7 @@ TEST_F(SilhouettePassTest, FacingsOfNearlyCoplanarTriangles) {
   };
   const Mesh mesh(loose_triangles(200, near_plane));
   EXPECT_GT(expect_facings("one plane", mesh, many(60, near_plane)), 60U * 200 / 2);
-  // Needles, whose normals are nothing but rounding.
+  // Needles, whose normals are mostly rounding error.
   const auto near_line = [&] {
     const float t = draw(random);
     const float y = std::nextafter(3 * t, 9 * draw(random)), z = std::nextafter(5 * t, 9 * draw(random));

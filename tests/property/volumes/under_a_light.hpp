@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// View samples under a rectangle light as methods on vector units see them, for tests that hold bounds of error to
-// exact places.
+// View samples under a rectangle light in the form that methods on vector units get, for tests that compare bounds of
+// error with exact places.
 
 #include "engines/vectors/clusters.hpp"
 #include "engines/vectors/light_grid.hpp"
@@ -18,7 +18,7 @@
 
 namespace penumbra::tests {
 
-/// A scene's first light with 8 × 8 light samples, and its side that u × v points to.
+/// A scene's first light with 8 × 8 light samples, and the side to which u × v points.
 struct UnderALight {
   explicit UnderALight(const scenes::Scene& scene, std::uint32_t cells = 8)
       : floats(visibility::make_scene_floats(scene)),
@@ -39,7 +39,7 @@ struct UnderALight {
 
   [[nodiscard]] glm::dvec3 scaled(const glm::vec3& x) const { return glm::dvec3(x) * static_cast<double>(scale); }
 
-  /// View samples on the first triangle, side by side; nothing unless all are in front of the light.
+  /// Returns view samples on the first triangle, side by side; nullopt unless all of them are in front of the light.
   [[nodiscard]] std::optional<std::vector<vectors::GridSample>> place(const std::vector<glm::vec3>& points) {
     const auto [a, b, c] = floats.corners(0);
     const glm::dvec3 normal = glm::cross(glm::dvec3(b) - glm::dvec3(a), glm::dvec3(c) - glm::dvec3(a));
@@ -68,7 +68,7 @@ struct UnderALight {
   float scale;
   visibility::DeviceLight device_light;
   vectors::LightGrid grid;
-  visibility::ViewSamples samples;  ///< what place() made
+  visibility::ViewSamples samples;  ///< the view samples of the last place()
 };
 
 }  // namespace penumbra::tests

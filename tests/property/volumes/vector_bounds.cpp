@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Measures how much of a bound of error is ever used on vector units: searches for the input that uses most of it.
-// Exact values come from long double, 2⁻⁶⁴ beside bounds of 2⁻²⁴.
+// Exact values come from long double, whose error of 2⁻⁶⁴ is small compared with bounds of 2⁻²⁴.
 
 #include "tests/agreement/crossings.hpp"
 #include "tests/agreement/most_used.hpp"
@@ -26,10 +26,11 @@ struct Use {
   double of_bound = 0, error = 0, bound = 0;
 };
 
-/// Place at which a point appears as the tables and Projection compute it: one order, nothing fused.
+/// Computes the place at which a point appears as the tables and Projection do: in the same order, without fused
+/// operations.
 struct Appears {
   glm::vec2 at{0};
-  float bound = 0;  ///< of either coordinate's error; 0: the point is not well above p
+  float bound = 0;  ///< of either coordinate's error; 0 if the point is not clearly above p
 };
 Appears appears(const LightGrid& grid, const Cluster& cluster, const ClusterSample& at, const glm::vec3& x) {
   const glm::vec3 from = x - cluster.middle;
@@ -43,13 +44,13 @@ Appears appears(const LightGrid& grid, const Cluster& cluster, const ClusterSamp
                      at.on_grid.fixed};
 }
 
-/// One view sample under a light, and a point whose place on the light is asked for.
+/// One view sample under a light, and a point whose place on the light is computed.
 class BoundX {
  public:
   explicit BoundX(const tests::Numbers& numbers) : numbers_(numbers) {}
 
-  /// |X as computed − X| over its bound (docs/edge-scatter.md, "X, relative to a cluster"), the worse of two axes;
-  /// nothing if the point is not well above p.
+  /// Returns |computed X − X| over its bound (docs/edge-scatter.md, "X, relative to a cluster"), the worse of two axes;
+  /// an empty Use if the point is not clearly above p.
   Use operator()() {
     const double away = std::exp2(6 * next()), size = std::exp2(-6 * next()), patch = std::exp2(-12 * next());
     scenes::Scene scene;
@@ -69,7 +70,7 @@ class BoundX {
     if (!placed) return {};
     const Cluster cluster = make_cluster(under.grid, *placed);
     const ClusterSample at = complete(under.grid, cluster, placed->front());
-    // A point over p, on the segment to somewhere near the light.
+    // A point above p, on the segment to a place near the light.
     const glm::dvec3 center = under.scaled(under.light.center);
     const glm::dvec3 target = center + 2 * real() * (under.scaled(under.light.center_u) - center) +
                               2 * real() * (under.scaled(under.light.center_v) - center);
@@ -114,7 +115,7 @@ TEST(VectorBounds, PlacesOfPointsOnTheLight) {
   EXPECT_GT(most.of_bound, 0.02) << "a bound that is never used is no bound of this error";
 }
 
-/// One view sample under a light, and a triangle of which an edge passes one of the light samples within rounding.
+/// One view sample under a light, and a triangle with an edge that passes one of the light samples within rounding.
 class AimedCrossing {
  public:
   explicit AimedCrossing(tests::Numbers numbers) {
@@ -129,7 +130,7 @@ class AimedCrossing {
                                                    size * glm::dvec3(1, 0.3 * numbers.real(), 0.3 * numbers.real()),
                                                    size * glm::dvec3(0.5 * numbers.real(), 0.3 * numbers.real(), 1)));
     p_ = glm::vec3(offset + glm::dvec3(0, 0.1, 0));
-    // The light samples are those of the scene without the triangle: nothing of it is beyond the anchor.
+    // The light samples are those of the scene without the triangle, as no part of it is outside the anchor.
     const tests::UnderALight without(scene_);
     sample_ = std::min(static_cast<std::uint32_t>(64 * numbers.next()), 63U);
     const std::array triangle =
@@ -140,7 +141,7 @@ class AimedCrossing {
     is_placed_ = under_->floats.origin == glm::dvec3(0) && under_->place({p_}).has_value();
   }
 
-  /// Returns the distance from the light sample to the crossing; nothing where the edge is not well above p.
+  /// Returns the distance from the light sample to the crossing; nothing if the edge is not clearly above p.
   [[nodiscard]] tests::Rounded crossing() {
     if (!is_placed_) return {};
     const std::vector<GridSample> placed = *under_->place({p_});
@@ -172,8 +173,8 @@ class AimedCrossing {
 
 class VectorCrossings : public tests::DeviceTest {};
 
-/// Every bit, where the place of a crossing as computed is on another side of a light sample than the crossing, by as
-/// much of the bound as can be found.
+/// Tests every bit where the computed crossing is on the other side of a light sample than the exact one, by as much of
+/// the bound as the search finds.
 TEST_F(VectorCrossings, OnTheWrongSideOfALightSample) {
   const auto method = volumes::make_edge_scatter(device(), {{"engine", "native"}});
   double used = 0;

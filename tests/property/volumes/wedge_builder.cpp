@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests wedges that the device builds: proved by the exact signs that prove the host's, and hardly looser.
+// Tests wedges that the device builds: they pass the same exact proofs as the host's, and are hardly looser.
 
 #include "tests/agreement/support.hpp"
 #include "tests/property/volumes/wedge_cases.hpp"
@@ -15,7 +15,7 @@
 namespace penumbra::volumes {
 namespace {
 
-/// A soup and lights over it; not stored around a centre, so that lattices stay lattices.
+/// A soup and lights over it; not stored relative to a centre, so that lattices stay lattices.
 struct Lit {
   Lit(const mesh::TriangleSoup& soup, std::vector<scenes::AreaLight> above) {
     std::vector<tests::Corners> triangles;
@@ -40,7 +40,7 @@ struct Lit {
   std::vector<visibility::Light> lights;
 };
 
-/// A square and a disk light at each place along a path, turned from place to place.
+/// A square and a disk light at each place along a path, with a new orientation at each place.
 std::vector<scenes::AreaLight> moving(std::size_t frames, double height, double half, double scale = 1) {
   std::vector<scenes::AreaLight> lights;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -64,7 +64,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
  protected:
   enum class How { like_host, valid, valid_and_like_host };
 
-  /// Compares with the host, from every light. Layers::one_a_solid unless the wedges are to be validated.
+  /// Compares with the host, for every light. Layers::one_a_solid unless the wedges are to be validated.
   static void expect_sound(const std::string& name, const Lit& stage, How how, WedgeTally& tally) {
     SCOPED_TRACE(name);
     const Layers layers = how == How::like_host ? Layers::one_a_solid : Layers::every_triangle;
@@ -94,7 +94,7 @@ class WedgeBuilderTest : public tests::DeviceTest {
     ASSERT_EQ(found.left_out, expected.left_out);
   }
 
-  /// Expects of wedges all that `wedges --validate` checks.
+  /// Expects that the wedges pass all checks of `wedges --validate`.
   static void expect_valid(const Lit& stage, const visibility::Light& light, const LightHull& hull,
                            const LightWedges& wedges) {
     const Casters casters = casters_of(stage.floats, light);
@@ -137,7 +137,7 @@ TEST_F(WedgeBuilderTest, FarFromOneInSize) {
 }
 
 /// Results do not depend on the schedule: a second run, another builder, and buffers that take the wedges in batches
-/// give the same bits. Buffers that do not hold the mesh leave everything to the host.
+/// give the same bits. If buffers cannot hold the mesh, everything is left to the host.
 TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
   const Lit stage(mesh::make_lattice_soup({200, 64, 7, glm::dvec3(0), 2}), moving(2, 5, 0.7));
   const std::uint64_t triangles = stage.floats.triangles.size(), enough = triangles * sizeof(gpu::FacingTriangle);
@@ -149,7 +149,7 @@ TEST_F(WedgeBuilderTest, TheSameBitsEveryTime) {
   }
   for (const visibility::Light& light : stage.lights) {
     const WedgeBuilder::Built first = builders[0].build(light);
-    ASSERT_GT(first.volumes.edges.size() * sizeof(Plane) * 4, 5 * enough);  // or a buffer held all
+    ASSERT_GT(first.volumes.edges.size() * sizeof(Plane) * 4, 5 * enough);  // otherwise a buffer would hold everything
     for (WedgeBuilder& builder : builders) {
       const WedgeBuilder::Built again = builder.build(light);
       expect_same(again.volumes, first.volumes);
@@ -186,8 +186,8 @@ TEST_F(WedgeBuilderTest, EveryDefectIsValid) {
   EXPECT_GT(tally.planes, 4000U);
 }
 
-/// The light among the triangles: edges touch it, cross it, point at it, lie in its plane. Those are the host's; where
-/// they just touch, the device may prove planes that the host leaves out.
+/// The light is among the triangles: edges touch it, cross it, point at it, lie in its plane. These are left to the
+/// host; where an edge only touches the light, the device may prove planes that the host leaves out.
 TEST_F(WedgeBuilderTest, LatticeSoupsAroundTheLight) {
   WedgeTally tally;
   for (std::uint32_t seed = 1; seed <= 8; ++seed) {

@@ -13,7 +13,7 @@
 /// Support for tests of validation: meshes as casters, a light of each kind, and the whole check.
 namespace penumbra::volumes::test {
 
-/// A light of each kind about `center`, below which the casters are; stored relative to zero.
+/// Returns a light of each kind about `center`, above the casters; stored relative to zero.
 inline std::vector<visibility::Light> lights_at(const glm::dvec3& center, double size) {
   const glm::dvec3 u(size, 0, 0.25 * size), v(-0.125 * size, 0.25 * size, size);
   scenes::Scene scene;
@@ -51,12 +51,12 @@ inline std::string text_of(const Violation& violation) {
          std::to_string(violation.distance);
 }
 
-/// Counts of what was checked, so that a test can say that it checked something.
+/// Counts of what was checked, so that a test can expect that there was something to check.
 struct Total {
   std::uint64_t wedges = 0, planes = 0, crops = 0;
 };
 
-/// Both constructions, silhouettes from the centre and from anywhere.
+/// Checks both constructions, with silhouettes from the centre and from anywhere on the light.
 inline Total expect_valid(const Casters& casters, const LightHull& light, const std::string& name) {
   Total total;
   for (const Construction construction : {Construction::original, Construction::tight}) {

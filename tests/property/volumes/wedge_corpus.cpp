@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wedges of the meshes of Debian's libcgal-demo under every kind of light: as they come, in scene floats.
+// Wedges of the meshes of Debian's libcgal-demo under every kind of light: unrepaired, in scene floats.
 
 #include "mesh/diagnosis/diagnosis.hpp"
 #include "mesh/import.hpp"
@@ -26,13 +26,13 @@ visibility::SceneFloats floats_of(mesh::TriangleSoup soup) {
   return visibility::make_scene_floats(scene);
 }
 
-/// Valid from the centre of each light, and from anywhere on its rectangle.
+/// Checks wedges from the centre of each light, and from anywhere on its rectangle.
 std::uint64_t check(const std::filesystem::path& file, bool closed_only) {
   mesh::ImportedMesh imported;
   try {
     imported = mesh::import_mesh(file);
   } catch (const std::exception& error) {
-    return 0;  // the importer's tests judge that
+    return 0;  // the importer's tests check such files
   }
   const mesh::MeshView view{imported.soup.positions, imported.soup.triangles};
   if (closed_only && !mesh::diagnose(view, {.search_intersections = false}).closed) return 0;
@@ -81,7 +81,7 @@ TEST(WedgeCorpus, AllClosedMeshesFull) {
     wedges += some;
     ++meshes;
     fmt::print("{}: {} wedges\n", file.filename().string(), some);
-    std::fflush(stdout);  // it takes long
+    std::fflush(stdout);  // progress, as this takes long
   }
   fmt::print("{} closed meshes, {} wedges\n", meshes, wedges);
   EXPECT_GT(meshes, 50U);

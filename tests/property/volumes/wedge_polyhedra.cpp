@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes cut by half-spaces: exact corners, ties of every kind, and flaws that are found.
+// Tests boxes cut by half-spaces: exact corners, ties of every kind, and flaws that are found.
 
 #include "volumes/wedges/wedge_polyhedron.hpp"
 
@@ -38,7 +38,7 @@ TEST(Polyhedra, FlatAndEmpty) {
   EXPECT_EQ(extent({1, 0, 0, 2}), Extent::solid) << "holds all of it";
 }
 
-/// A third is no double: the corner is a rational, and the plane's own sign there is zero.
+/// A third is not a double: the corner is rational, and the plane's sign there is exactly zero.
 TEST(Polyhedra, CornersAreExact) {
   const Plane planes[] = {{3, 0, 0, -1}, {0, 7, 0, -1}, {0, 0, -11, 1}};
   const Polyhedron cut = cut_box(kBox, planes);

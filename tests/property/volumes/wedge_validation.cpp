@@ -86,7 +86,7 @@ TEST(WedgeValidation, AllDefectsTogetherFull) {
   }
 }
 
-/// Soups on a lattice, with the light among them: edges touch it, cross it, point at it, lie in its plane.
+/// Soups on a lattice, with the light among the triangles: edges touch it, cross it, point at it, lie in its plane.
 TEST(WedgeValidation, LatticeSoupsAroundTheLight) {
   std::array<std::size_t, 4> outcomes{};
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
@@ -100,7 +100,7 @@ TEST(WedgeValidation, LatticeSoupsAroundTheLight) {
   for (const std::size_t count : {outcomes[0], outcomes[1], outcomes[2]}) EXPECT_GT(count, 10U);
 }
 
-/// Every mistake is found, and by the invariant that it breaks.
+/// Every mistake is found, by the invariant that it breaks.
 TEST(WedgeValidation, EveryFaultIsCaught) {
   const Loaded scene = shipped("broken");
   const CastingEdges casting = casting_edges(scene.casters, scene.hull, SilhouettesFrom::center, false);
@@ -120,7 +120,7 @@ TEST(WedgeValidation, EveryFaultIsCaught) {
   }
 }
 
-/// The construction must split an edge that points at the light, beside its middle.
+/// The construction must split an edge that points at the light, away from the light's middle.
 TEST(WedgeValidation, APlaneOfAnUnsplitEdgeIsCaught) {
   const Casters casters = casters_of(soup_of({{0.25, 3.9, 0}, {0.25, -3, 0}, {2, 0, 1}}, {{0, 1, 2}}));
   const LightHull light{{{-1, 4, -1}, {1, 4, -1}, {1, 4, 1}, {-1, 4, 1}}, {0, 4, 0}, 0, false};
@@ -161,8 +161,8 @@ TEST(WedgeValidation, WhatElseMayBeWrong) {
   EXPECT_TRUE(caught(Invariant::polyhedron, [](List w) { w.back().planes.push_back({0, 1, 0, -100}); }));
 }
 
-/// A cube under a light that sees its top certainly and one side partly: that edge's wedge is cropped, the crop is
-/// proved, and the same plane the other way round is not.
+/// A cube under a light all of which sees its top and a part of which sees one side: that edge's wedge is cropped, the
+/// crop is proved, and the same plane the other way round is refused.
 TEST(WedgeValidation, CropsAreProved) {
   const mesh::TriangleSoup cube = mesh::make_broken_mesh({{"none"}, 1, {0, 0, 0}, 0.5}).soup;
   const Casters casters = casters_of(cube);
@@ -180,7 +180,7 @@ TEST(WedgeValidation, CropsAreProved) {
   EXPECT_GE(report.violations.size(), result.report.cropped_planes);
 }
 
-/// The lights' stored samples lie within the hull: their bounds along many directions do.
+/// The lights' stored samples lie within the hull, because their extents along many directions do.
 TEST(WedgeValidation, HullsHoldTheirLights) {
   for (const glm::dvec3& center : {glm::dvec3(0.3, 4, 0.1), glm::dvec3(1000, -300, 20)}) {
     for (const visibility::Light& light : lights_at(center, 0.125)) {
@@ -192,15 +192,15 @@ TEST(WedgeValidation, HullsHoldTheirLights) {
         std::vector<glm::vec3> points(light.sample_count());
         visibility::light_points_for(light, glm::vec3(center + 5.0 * n), points.data());
         for (const glm::vec3& point : points) inner = std::max(inner, glm::dot(n, glm::dvec3(point) - hull.center));
-        // Stored points may leave the plane of a flat light, and a corner of a rectangle, by their rounding.
+        // By their rounding, stored points may be off the plane of a flat light, or outside a corner of a rectangle.
         EXPECT_LE(inner, reach + 0x1p-22 * (glm::length(center) + 1)) << light.name;
       }
     }
   }
 }
 
-/// The penumbra of an edge is convex, so tight wedges are no larger. Normals are turned by 2⁻²⁰ at most, and a section
-/// is at most 2⁶ of these turns away from its edge, in a penumbra at least 2⁻² wide.
+/// The penumbra of an edge is convex, so tight wedges are no larger. Normals are turned by at most 2⁻²⁰, and a section
+/// is at most 2⁶ of such turns away from its edge, in a penumbra at least 2⁻² wide.
 TEST(WedgeTightness, TightWedgesAreThePenumbra) {
   const Loaded scene = shipped("broken");
   for (const Construction construction : {Construction::tight, Construction::original}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The irregular z-buffer against each triangle by itself with exact predicates: lattice soups, flawed meshes, shipped
-// scenes, every kind of light, view samples all around it.
+// Compares the irregular z-buffer with exact predicates on each triangle: lattice soups, flawed meshes, shipped scenes,
+// every kind of light, view samples all around the light.
 
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/lattice.hpp"
@@ -31,7 +31,7 @@ struct Tally {
   }
 };
 
-/// Returns whether the light's centre is visible, by each triangle alone.
+/// Returns whether the light's centre is visible, by testing each triangle.
 bool sees_center(const SceneFloats& floats, const ViewSamples& samples, std::size_t pixel, const Light& light) {
   const auto carrier = static_cast<std::uint32_t>(samples.triangle[pixel]);
   const glm::vec3 &p = samples.p[pixel], l = visibility::center_of(light);
@@ -65,7 +65,7 @@ Tally compare(const SceneFloats& floats, const Light& light, const ViewSamples& 
   return tally;
 }
 
-/// Compares a soup under one kind of light, in turn rectangle, sphere, sun and those of point_lights.
+/// Compares a soup under one kind of light; kinds take turns: rectangle, sphere, sun and those of point_lights.
 Tally compare_soup(std::uint32_t seed, int range) {
   tests::LatticeSoup soup(seed, range);
   visibility::SampleRequest request;
@@ -141,8 +141,8 @@ TEST(AliasFree, FlawedMeshes) {
   }
 }
 
-/// A sphere light in the middle of a room, seen through holes: all six faces have view samples, and triangles lie
-/// across their borders.
+/// A sphere light in the middle of a room, seen through holes: all six faces of the map have view samples, and
+/// triangles lie across the faces' borders.
 TEST(AliasFree, AllAroundTheLight) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -193,7 +193,7 @@ TEST(AliasFree, ASquareThrowsASquare) {
   EXPECT_GT(dark, 300U);
 }
 
-/// The grid finds what to test: far fewer pairs than there are.
+/// The grid limits the tests: far fewer pairs are tested than there are.
 TEST(AliasFree, ListsAreShortAndTilesChangeNothing) {
   const tests::Stage stage(tests::with_a_floor(mesh::make_broken_mesh({{"hole"}, 4, {0, 1, 0}, 1}).soup), 64, 48);
   const auto method = make_alias_free({});

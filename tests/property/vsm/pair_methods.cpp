@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Methods that take pairs away triangle by triangle against the exact decision, without tolerance: lattice soups under
-// every kind of light that they do, lamps where rounding matters most, flawed meshes, shipped scenes.
+// Compares methods that decide pairs triangle by triangle with the exact decision, without tolerance: lattice soups
+// under every kind of light that they support, lamps where rounding matters most, flawed meshes, shipped scenes.
 
 #include "tests/agreement/differences.hpp"
 #include "tests/agreement/hostile_lamps.hpp"
@@ -29,13 +29,13 @@ struct PairMethodUnderTest {
   std::unique_ptr<visibility::Method> (*make)(const visibility::MethodOptions&);
   friend std::ostream& operator<<(std::ostream& out, const PairMethodUnderTest& method) { return out << method.name; }
 };
-/// view-sample with variant=sintorn, which needs no device.
+/// Makes view-sample with variant=sintorn, which needs no device.
 std::unique_ptr<visibility::Method> make_sintorn(const visibility::MethodOptions& options) {
   visibility::MethodOptions all = options;
   all["variant"] = "sintorn";
   return vsm::make_view_sample_lists(vsm::view_sample_description(all));
 }
-/// Every plane is a receiver of its own, and the map is coarse, so that much is left open.
+/// Makes a method in which every plane is a separate receiver and the map is coarse, so that much is left open.
 std::unique_ptr<visibility::Method> make_planes(const visibility::MethodOptions& options) {
   visibility::MethodOptions all{{"fewest", "1"}, {"map", "9"}};
   all.insert(options.begin(), options.end());
@@ -48,7 +48,8 @@ constexpr std::array kPairMethods{PairMethodUnderTest{"hierarchical_penumbra", v
 
 class PairMethods : public testing::TestWithParam<PairMethodUnderTest> {
  protected:
-  /// A lattice soup under a rectangle in rows, one with samples anywhere, a light of point_lights, or a sun, in turn.
+  /// Checks a lattice soup under, in turn, a rectangle with samples in rows, one with samples anywhere, a light of
+  /// point_lights, or a sun.
   static PairCounts look_at_soup(std::uint32_t seed, int range) {
     tests::LatticeSoup soup(seed, range);
     visibility::SampleRequest request;
@@ -141,9 +142,9 @@ TEST_P(PairMethods, FlawedMeshes) {
   }
 }
 
-/// A square in the middle between a square light and the floor, parallel to both, with sides half as long as the
-/// light's: what p sees of it on the light is the square [c − ½, c + ½]² of a light [−1, 1]², c = −2 p as fractions of
-/// the light's half-size: counts of light samples on a grid follow.
+/// A square half way between a square light and the floor, parallel to both, with sides half as long as the light's. On
+/// a light [−1, 1]², p sees it as the square [c − ½, c + ½]² with c = −2 p in half-sizes of the light. This gives the
+/// counts of light samples on a grid.
 TEST_P(PairMethods, ASquareHidesASquareOfLightSamples) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4}));
@@ -158,7 +159,7 @@ TEST_P(PairMethods, ASquareHidesASquareOfLightSamples) {
       continue;
     const glm::dvec3 p = glm::dvec3(stage.samples.p[i]) + stage.floats.origin;
     std::array<int, 2> hidden{};
-    bool close = false;  // p is a float: off by 2⁻²⁴ · 4 at most, its square's sides then by as much
+    bool close = false;  // p is a float, off by at most 2⁻²⁴ · 4; so are the sides of its square
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const double c = axis == 0 ? -p.x : -p.z;
       for (int k = 0; k < 16; ++k) {
@@ -201,8 +202,7 @@ const auto kName = [](const auto& it) { return std::string(it.param.name); };
 INSTANTIATE_TEST_SUITE_P(Of, PairMethods, testing::ValuesIn(kPairMethods), kName);
 INSTANTIATE_TEST_SUITE_P(Of, PairMethodsFull, testing::ValuesIn(kPairMethods), kName);
 
-/// A square that is larger than the light has an umbra: boxes of pairs there, and beside the penumbra, are done with as
-/// a whole.
+/// A square larger than the light has an umbra: boxes of pairs in it, and outside the penumbra, are decided as a whole.
 TEST(HierarchicalPenumbra, BoxesDecideMostPairs) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4})).casts_shadow = false;
@@ -220,7 +220,7 @@ TEST(HierarchicalPenumbra, BoxesDecideMostPairs) {
   EXPECT_LT(counters.at("pairsByExactPredicates"), counters.at("pairsTried") / 100);
 }
 
-/// The published look-up is wrong near outlines, and less so as the map gets finer.
+/// The published look-up is wrong near outlines, and less often with a finer map.
 TEST(ViewSamplePlanar, FinerMapsAreLessWrong) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, 0, 0}, {4, 0, 0}, {0, 0, -4})).casts_shadow = false;

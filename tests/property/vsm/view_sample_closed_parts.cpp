@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Closed parts drop the triangles that pairs outside of them do not need: not one bit may change. The parts here are
-// the worst that are still closed: spheres only in how they are connected, with vertices anywhere on a lattice, so that
-// they cross themselves, touch their box, the floor and the view samples, and have hardly anything that could be called
-// an inside.
+// the worst that are still closed: they are connected like spheres, but with vertices anywhere on a lattice, so that
+// they cross themselves, touch their box, the floor and the view samples, and have hardly any inside.
 
 #include "mesh/shapes/shapes.hpp"
 #include "tests/agreement/lattice.hpp"
@@ -21,7 +20,7 @@ using visibility::Light;
 using visibility::SceneFloats;
 using visibility::ViewSamples;
 
-/// An icosphere's triangles with its vertices at different points of the lattice −range … range, chosen at random.
+/// Returns an icosphere's triangles with its vertices at different random points of the lattice −range … range.
 std::vector<tests::Corners> tangled_sphere(tests::LatticeSoup& soup, int range) {
   const mesh::TriangleSoup sphere = mesh::make_icosphere(glm::dvec3(0), 1, 1);
   std::vector<glm::dvec3> lattice;
@@ -36,7 +35,8 @@ std::vector<tests::Corners> tangled_sphere(tests::LatticeSoup& soup, int range) 
   return triangles;
 }
 
-/// Objects: 0 a part, 1 lattice triangles outside its box or on the box's faces, 2 lattice triangles anywhere.
+/// Objects: 0 is a part, 1 has lattice triangles outside the part's box or on its faces, 2 has lattice triangles
+/// anywhere.
 scenes::Scene tangled_scene(tests::LatticeSoup& soup, int range, visibility::SampleRequest& request) {
   scenes::Scene scene;
   scene.lights.push_back(soup.light(request));
@@ -48,7 +48,8 @@ scenes::Scene tangled_scene(tests::LatticeSoup& soup, int range, visibility::Sam
     const int axis = static_cast<int>(soup.below(3));
     const double face = (soup.below(4) == 0 ? range + 1.0 : range) * (soup.below(2) == 0 ? 1 : -1);
     for (glm::dvec3& corner : corners) {
-      const glm::dvec3& of_part = part[soup.below(80)][soup.below(3)];  // where the part touches the face, if it does
+      const glm::dvec3& of_part =
+          part[soup.below(80)][soup.below(3)];  // a place where the part touches the face, if it does
       if (of_part[axis] == face) corner = of_part;
       corner[axis] = face;
     }
@@ -111,7 +112,8 @@ TEST(ClosedParts, WhatCountsAsOne) {
 
   std::swap(sphere.triangles[7][0], sphere.triangles[7][1]);
   EXPECT_EQ(find_closed_parts(floats_of(sphere)).turn, whole.turn) << "winding must not matter";
-  // A triangle elsewhere on one of its planes: the carriers there would leave a triangle of the part out.
+  // A triangle elsewhere in one of the part's planes: if it is a carrier, the triangle of the part in that plane does
+  // not count.
   const auto& [a, b, c] = sphere.triangles[5];
   const glm::dvec3 at = sphere.positions[a];
   const std::vector<tests::Corners> beside{{at, sphere.positions[b], sphere.positions[c]}};

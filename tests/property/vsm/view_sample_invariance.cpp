@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what must not change a single bit of view-sample mapping: the order, winding and first vertex of triangles,
-// doubled vertices and faces, the size of tiles, a second run, a scale by a power of two. Tests also what may change
-// almost nothing: another scale, another place in the world.
+// Tests changes that must not alter a single bit of view-sample mapping: the order, winding and first vertex of
+// triangles, doubled vertices and faces, the size of tiles, a second run, a scale by a power of two. Also tests changes
+// that may alter almost nothing: another scale, another place in the world.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
@@ -48,7 +48,7 @@ class Invariance : public tests::DeviceTest {
   }
 };
 
-/// Triangles in another order, each from another first vertex and often flipped.
+/// Returns the triangles in another order, each with another first vertex and often turned over.
 scenes::Scene shuffled(const scenes::Scene& scene, std::mt19937& random) {
   scenes::Scene result = scene;
   tests::shuffle_order(result.soup, random);
@@ -56,7 +56,7 @@ scenes::Scene shuffled(const scenes::Scene& scene, std::mt19937& random) {
   return result;
 }
 
-/// Every triangle with vertices of its own, and every third face twice, the other way round.
+/// Returns the scene with separate vertices for every triangle, and with a turned-over copy of every third face.
 scenes::Scene doubled(const scenes::Scene& scene) {
   scenes::Scene result = scene;
   mesh::TriangleSoup& soup = result.soup;
@@ -82,7 +82,8 @@ TEST_F(Invariance, OrderWindingAndDoublesOfTriangles) {
     tests::LatticeSoup soup(seed, 3);
     SampleRequest request;
     scenes::Scene scene = lattice_scene(soup, request);
-    // A face that casts shadow and its double that does not are two different worlds, whichever is seen first.
+    // Of a face that casts shadow and its copy that does not, either could be seen first: so here all objects cast
+    // shadow.
     for (scenes::Object& object : scene.objects) object.casts_shadow = true;
     for (scenes::Object& object : scene.objects) object.emits.reset();
     const Picture plain = picture(scene, 48, request);
@@ -108,7 +109,7 @@ TEST_F(Invariance, AnotherRunAndSmallTiles) {
       const Light light = visibility::make_light(scene, 0, floats.origin, request);
       for (const char* engine : {"vulkan", "native"}) {
         if (engine == std::string("native") && request.pattern != SampleRequest{}.pattern)
-          continue;  // goes to the device
+          continue;  // these run on the device
         const auto method = make_view_sample(device(), {{"engine", engine}});
         const Masks whole = tests::run(*method, floats, light, samples);
         for (const std::uint32_t rows : {0U, 1U, 3U, 16U, 37U}) {
@@ -124,7 +125,7 @@ TEST_F(Invariance, AnotherRunAndSmallTiles) {
 }
 
 TEST_F(Invariance, OneMethodForManyMeshesLightsAndViews) {
-  // Buffers that were made for something larger or smaller must not leak into the next answer.
+  // Data in buffers made for something larger or smaller must not affect the next answer.
   for (const char* engine : {"vulkan", "native"}) {
     const auto method = make_view_sample(device(), {{"engine", engine}});
     for (const std::uint32_t size : {64U, 9U, 40U}) {
@@ -140,8 +141,8 @@ TEST_F(Invariance, OneMethodForManyMeshesLightsAndViews) {
 }
 
 TEST_F(Invariance, LightsOnTheOneEngineAndTheOther) {
-  // Rows on the processor, points that form no rows on the device: in turns, in one method, while
-  // the view stays.
+  // One method, with alternating lights: rows on the processor, and points that form no rows on the device, while the
+  // view stays.
   const auto method = make_view_sample(device(), {{"engine", "native"}});
   const scenes::Scene scene = shipped("contact.json");
   const tests::Stage stage(scene, 40, 40, {64, 0, 0, visibility::SamplePattern::rows, 0});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Broken meshes described in other ways: the same triangles in another order, from another first vertex, wound the
-// other way, on vertices of their own, twice, or cut at points exactly on them. None of this may change a bit.
+// Broken meshes described in other ways: the same triangles in another order, with another first vertex, wound the
+// other way, with separate vertices, twice, or cut at points exactly on them. None of this may change a bit.
 // (view_sample_invariance.cpp does this for scenes and for soups with lights among them.)
 
 #include "tests/agreement/differences.hpp"
@@ -22,7 +22,7 @@ struct Case {
   mesh::TriangleSoup soup;
 };
 
-/// Every defect in one of the meshes, and soups from a lattice of very few points.
+/// Meshes with each of the defects, and soups from a lattice of very few points.
 std::vector<Case> cases() {
   std::vector<Case> result;
   const auto defects = mesh::broken_defects();
@@ -39,7 +39,7 @@ std::vector<Case> cases() {
   return result;
 }
 
-/// Another description of a soup.
+/// Changes the description of a soup.
 using Wording = void (*)(mesh::TriangleSoup&, std::mt19937&);
 
 void permute(mesh::TriangleSoup& soup, std::mt19937& random) {
@@ -56,7 +56,7 @@ void flip(mesh::TriangleSoup& soup, std::mt19937& random) {
 void flip_all(mesh::TriangleSoup& soup, std::mt19937&) {
   for (mesh::Triangle& t : soup.triangles) std::swap(t[0], t[2]);
 }
-/// Some corners get a position of their own, with zeros of the other sign.
+/// Gives some corners a separate position, with zeros of the other sign.
 void duplicate_vertices(mesh::TriangleSoup& soup, std::mt19937& random) {
   for (mesh::Triangle& t : soup.triangles) {
     for (std::uint32_t& corner : t) {
@@ -86,7 +86,7 @@ class Metamorphic : public tests::DeviceTest, public testing::WithParamInterface
     Masks masks;
   };
 
-  /// `samples`: the given ones, or those that the camera sees.
+  /// `samples`: the given view samples, or else those that the camera sees.
   Picture picture(const SceneFloats& floats, const scenes::Scene& scene, std::optional<ViewSamples> samples = {}) {
     const Light light = visibility::make_light(scene, 0, floats.origin, {});
     if (!samples) {
@@ -130,15 +130,15 @@ TEST_P(Metamorphic, TheSameTrianglesInOtherWords) {
   EXPECT_GT(partly, 300U);  // pixels in penumbra
 }
 
-/// A scene whose triangles are cut, and for each piece the triangle that it comes from.
+/// A scene whose triangles are cut, and the original triangle of each piece.
 struct Split {
   scenes::Scene scene;
   std::vector<std::uint32_t> whole;
 };
 
-/// Each triangle left alone, cut in two at a point on a side, in three at a point inside, or in four at the middles of
-/// its sides. The points are halves and quarters, exact on a lattice of dyadic numbers. Neighbours are cut on their
-/// own: T-junctions everywhere.
+/// Leaves each triangle alone, or cuts it in two at a point on a side, in three at a point inside, or in four at the
+/// middles of its sides. The points are halves and quarters, exact on a lattice of dyadic numbers. Neighbours are cut
+/// independently, so there are T-junctions everywhere.
 Split split(const scenes::Scene& scene, std::mt19937& random) {
   Split result{scene, {}};
   mesh::TriangleSoup& soup = result.scene.soup;
@@ -194,7 +194,7 @@ glm::dvec3 normal(const std::array<glm::vec3, 3>& corners) {
   return glm::cross(glm::dvec3(corners[1]) - a, glm::dvec3(corners[2]) - a);
 }
 
-/// Returns how far inside the triangle the point is, in units of area, seen along the triangle's normal.
+/// Returns how far inside the triangle the point is, in units of area, as seen along the triangle's normal.
 double inside(const std::array<glm::vec3, 3>& corners, const glm::dvec3& p) {
   const glm::dvec3 n = glm::normalize(normal(corners));
   double least = std::numeric_limits<double>::max();
@@ -205,7 +205,7 @@ double inside(const std::array<glm::vec3, 3>& corners, const glm::dvec3& p) {
   return least;
 }
 
-/// View samples with the given stored points, each on the piece that it lies on.
+/// Returns view samples with the given stored points, each on the piece that contains it.
 ViewSamples on_pieces(const ViewSamples& samples, const SceneFloats& before, const SceneFloats& after,
                       const std::vector<std::uint32_t>& whole) {
   ViewSamples result = samples;
@@ -221,7 +221,7 @@ ViewSamples on_pieces(const ViewSamples& samples, const SceneFloats& before, con
       if (here > depth) depth = here, best = index;
     }
     result.triangle[pixel] = static_cast<std::int32_t>(best);
-    // Sorted corners may turn the other way.
+    // The order of sorted corners may reverse the normal.
     const bool turned = glm::dot(normal(before.corners(of)), normal(after.corners(best))) < 0;
     result.facing[pixel] = static_cast<std::int8_t>(turned ? -samples.facing[pixel] : samples.facing[pixel]);
   }
@@ -247,13 +247,13 @@ TEST_P(Metamorphic, CutAtPointsExactlyOnThem) {
       }
     }
     const Picture plain = picture(before, scene);
-    // Points as a camera sees them, and points exactly on triangles, some on the very lines that cut them.
+    // Points as a camera sees them, and points exactly on triangles, some of them on the lines of the cuts.
     const Picture cut_picture = picture(after, cut, on_pieces(plain.samples, before, after, whole));
     EXPECT_EQ(tests::differing_bits(plain.masks, cut_picture.masks), 0U) << name;
     const Picture exact = picture(before, scene, tests::samples_on_triangles(before, 16, 12, random));
     const Picture exact_cut = picture(after, cut, on_pieces(exact.samples, before, after, whole));
     EXPECT_EQ(tests::differing_bits(exact.masks, exact_cut.masks), 0U) << name;
-    // A camera that sees the cut scene again has p rounded from the pieces' corners.
+    // For a camera that sees the cut scene, p is rounded from the pieces' corners.
     const Picture anew = picture(after, cut);
     differing += tests::differing_bits(plain.masks, anew.masks);
     for (const std::int32_t triangle : plain.samples.triangle) pairs += triangle < 0 ? 0 : 256;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kind of planar light, sample pattern and count: a random soup over a tilted floor, each pair (of a choice of
-// pixels where there are many) against the exact decision.
+// Every kind of planar light, sample pattern and count: a random soup over a tilted floor, where each pair (at some of
+// the pixels if there are many) is compared with the exact decision.
 
 #include "tests/agreement/support.hpp"
 #include "tests/unit/visibility/soups.hpp"

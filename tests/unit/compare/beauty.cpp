@@ -18,7 +18,8 @@ using visibility::ViewSamples;
 
 constexpr double kPi = std::numbers::pi;
 
-/// One pixel a triangle of object 0 at the given points, facing up, with colour (0.5, 0.25, 1).
+/// A floor with one pixel and one triangle of object 0 at each of the given points, facing up, with colour (0.5, 0.25,
+/// 1).
 struct Floor {
   SceneFloats scene;
   ViewSamples samples;
@@ -42,8 +43,8 @@ struct Floor {
   }
 };
 
-/// A horizontal rectangle at height y with half sides a along x and b along z, emitting down (or up), with rows ×
-/// columns cell-centred samples.
+/// Returns a horizontal rectangle at height y with half sides a along x and b along z, emitting down (or up), with rows
+/// × columns samples at the centres of cells.
 Light rectangle(float y, float a, float b, int rows, int columns, bool down = true) {
   Light light;
   light.area = 4.0 * static_cast<double>(a) * static_cast<double>(b);
@@ -87,7 +88,7 @@ TEST(Beauty, ALightToOneSide) {
   Floor floor({{3, 0, 0}});
   floor.lights = {rectangle(4, 1, 1, 1, 1)};
   const std::vector<std::uint32_t> seen{1};
-  // The strip from 2 to 4 beside the element: the rectangle up to 4 minus the one up to 2, twice.
+  // The strip from 2 to 4 next to the element: the rectangle up to 4 minus the one up to 2, twice.
   const double expected = 2 * (corner_form_factor(4, 1, 4) - corner_form_factor(2, 1, 4));
   EXPECT_FLOAT_EQ(floor.shade({{seen, {}}})[0].r, static_cast<float>(0.5 * 10 * expected));
 }
@@ -103,8 +104,9 @@ TEST(Beauty, IsTheRectanglesFormFactor) {
 }
 
 TEST(Beauty, AMaskCountsItsOwnSamplesOnly) {
-  // Two samples at x = ∓1 of a light 4 × 2 at height 2, seen from x = 1: d = (−2, 2, 0) and (0, 2, 0). cos θp / d³ are
-  // as 1/8² and 1/4²: 1 part and 4 parts of the whole, which is 3 long on one side, 1 on the other.
+  // Two samples at x = ∓1 of a light 4 × 2 at height 2, seen from x = 1: d = (−2, 2, 0) and (0, 2, 0). Their
+  // weights cos θp / d³ are in the proportion of 1/8² to 1/4²: 1 part and 4 parts of the whole light, which reaches 3
+  // to one side of the element and 1 to the other.
   Floor floor({{1, 0, 0}});
   floor.lights = {rectangle(2, 2, 1, 1, 2)};
   const double whole = 0.5 * 10 * 2 * (corner_form_factor(3, 1, 2) + corner_form_factor(1, 1, 2));
@@ -155,13 +157,14 @@ TEST(Beauty, ASphereShinesOverItsSolidAngle) {
   floor.lights = {light};
   const std::vector<std::uint32_t> seen{15, 15, 15};
   const auto colors = floor.shade({{seen, {}}});
-  // A sphere that is all above the horizon: colour · radiance · cos θp · (r / d)², as a point light of its intensity.
+  // A sphere entirely above the horizon: colour · radiance · cos θp · (r / d)², as for a point light of the same
+  // intensity.
   EXPECT_FLOAT_EQ(colors[0].r, static_cast<float>(0.5 * 10 / 1600));
   EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(0.5 * 10 * 0.8 / 2500));
   EXPECT_EQ(colors[2].r, 0) << "in the sphere";
 }
 
-/// A sun of radiance L gives what faces it π sin²(angle / 2) L; what is turned by 60° gets half of that.
+/// A sun of radiance L gives a surface that faces it π sin²(angle / 2) L; a surface turned by 60° gets half of that.
 TEST(Beauty, ASunShinesOverItsSolidAngle) {
   Floor floor({{0, 0, 0}, {1000, -7, 30}});
   scenes::Scene scene;
@@ -176,15 +179,15 @@ TEST(Beauty, ASunShinesOverItsSolidAngle) {
       for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r / expected, 1, 1e-6) << angle;
     }
   }
-  // A sun of angle 0: `radiance` is the irradiance of a surface that faces it; a diffuse surface shows colour / π of
-  // that.
+  // For a sun of angle 0, `radiance` is the irradiance of a surface that faces it; a diffuse surface shows colour / π
+  // times that.
   scene.lights[0].shape = scenes::Sun{{std::sqrt(0.75), -0.5, 0}, 0};
   floor.lights = {visibility::make_light(scene, 0, glm::dvec3(0), {4, 2, 2, visibility::SamplePattern::grid, 0})};
   for (const glm::vec3& color : floor.shade({{seen, {}}})) EXPECT_NEAR(color.r, 0.5 * 10 / kPi / 2, 1e-6);
 }
 
-/// The extension's reference formula: inside the inner angle 1, outside the outer 0, between them the square of a ramp
-/// in the cosine.
+/// The extension's reference formula: 1 inside the inner angle, 0 outside the outer angle, between them the square of a
+/// ramp in the cosine.
 TEST(Beauty, ASpotLampFallsOffBetweenItsCones) {
   constexpr double kHeight = 40;
   const auto at = [&](double degrees) { return glm::vec3(kHeight * std::tan(degrees * kPi / 180), 0, 0); };
@@ -273,7 +276,7 @@ TEST(Beauty, BodiesShowTheirOwnLightOnceAndReflectThatOfOthers) {
   EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(3 * reflected));
 }
 
-/// Many points, and a mask of noise for each.
+/// Many points, with a random mask for each.
 struct ManyPoints {
   Floor floor;
   std::vector<std::uint32_t> masks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of sequences of runs, and the part of each cause.
+// Tests the limits of sequences of runs, and the share of the error that each cause has.
 #include "compare/error_budget.hpp"
 
 #include <gtest/gtest.h>
@@ -59,11 +59,11 @@ TEST(ErrorBudget, ARepairIsTheChangeToWhereItsRunsLead) {
   EXPECT_EQ(change(part_of({0.13}), RepairEnd::last), std::pair(std::optional(0.13 - base), true));
   EXPECT_EQ(change(part_of({0.07, 0.06}), RepairEnd::settled, true), std::pair(std::optional(0.06 - base), true));
   EXPECT_EQ(change(part_of({0.07, 0.06}), RepairEnd::settled, false), std::pair(std::optional(0.06 - base), false));
-  // Means of squares of 0.0100, 0.0052, 0.0028: to 0.0004.
+  // Mean squares of 0.0100, 0.0052, 0.0028 converge to 0.0004.
   const auto limit = change(part_of({std::sqrt(0.0052), std::sqrt(0.0028)}), RepairEnd::limit);
   EXPECT_NEAR(limit.first.value(), 0.02 - base, 1e-12);
   EXPECT_TRUE(limit.second);
-  // The limit with a first run of its own is that of the last three.
+  // If the part has a first run of its own, the limit is that of its last three runs.
   const auto own = change(part_of({0.2, std::sqrt(0.02), 0.1}), RepairEnd::limit);
   EXPECT_NEAR(own.first.value(), 0 - base, 1e-7) << "the root of a rounding error";
   // Runs that failed end the sequence.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plot of errors against seconds, as `sweep` writes it.
+// Tests the plot of errors against seconds that `sweep` writes.
 
 #include "compare/error_plot.hpp"
 
@@ -18,7 +18,7 @@ bool has(const ErrorPlot& plot, const char* text) {
   return error_plot_svg(plot, "").find(text) != std::string::npos;
 }
 
-/// Names stay in the drawing.
+/// Labels stay inside the drawing.
 TEST(ErrorPlot, NamesFindAPlace) {
   ErrorPlot plot = plot_of(0.0034);
   EXPECT_FALSE(has(plot, "<text text-anchor=\"end\" x="));
@@ -26,7 +26,7 @@ TEST(ErrorPlot, NamesFindAPlace) {
   EXPECT_TRUE(has(plot, "<text text-anchor=\"end\" x="));
 }
 
-/// A method that is right to a float's last digit does not push all others into a corner.
+/// A method whose error is below a float's last digit does not push all others into a corner.
 TEST(ErrorPlot, ErrorsBelowAFloatsLastDigitAreNone) {
   EXPECT_TRUE(has(plot_of(2.5e-10), "\">0</text>"));
   EXPECT_FALSE(has(plot_of(2.5e-10), "1e-1"));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible errors: shares, banding and FLIP.
+// Tests the measures of visible errors: share of visible differences, banding and FLIP.
 #include "compare/eye.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,8 @@ TEST(EyeErrorTest, CountsWhatAByteShowsAndStepsBetweenNeighbours) {
   const Errors e;
   const EyeError eye = eye_error({e.v, e.reference, e.judged}, e.penumbra, 3).value();
   EXPECT_DOUBLE_EQ(eye.over255, 3.0 / 6) << "1/512 is below a byte's step";
-  // Pairs beside one another: 0–1, 1–2, 3–4. Pairs one below the other: 0–3, 1–4; 2–5 has one end out of the penumbra,
-  // and 2–3 are in two rows.
+  // Pairs side by side: 0–1, 1–2, 3–4. Pairs one above the other: 0–3, 1–4. Not 2–5, of which one end is outside the
+  // penumbra, nor 2–3, which are in two rows.
   const double squares =
       std::pow(1 / 8.0, 2) + 0 + std::pow(1 / 512.0 + 1 / 8.0, 2) + std::pow(1 / 512.0, 2) + 1 / 16.0;
   EXPECT_DOUBLE_EQ(*eye.banding, std::sqrt(squares / 5));
@@ -51,7 +51,7 @@ TEST(RangeErrorTest, EachPixelIsInTheRangeOfItsSize) {
 }
 
 TEST(SeparationTest, IsWhatIsLeftOfTheBeautysErrorWithoutThatOfV) {
-  // ∫GV is 1 and 3, V · ∫G with the true V 2 and 3, with the method's 2.5 and 2.
+  // ∫GV is 1 and 3; V · ∫G is 2 and 3 with the true V, 2.5 and 2 with the method's V.
   const std::vector<glm::vec3> reference{{1, 1, 1}, {3, 3, 3}}, separated{{2, 2, 2}, {3, 3, 3}},
       method{{2.5, 2.5, 2.5}, {2, 2, 2}};
   const std::vector<std::uint32_t> pixels{0, 1};
@@ -67,8 +67,8 @@ Image8 plain(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   return {9, 7, std::vector<Color8>(63, {r, g, b})};
 }
 
-/// Pictures of one colour have no edges: FLIP is the redistributed HyAB ^ .7 of two Hunt-adjusted colours. L*a*b* of
-/// sRGB's primaries under D65, as tables have them: green 87.73, −86.18, 83.18; blue 32.30, 79.19, −107.86.
+/// Pictures of one colour have no edges: FLIP is the redistributed HyAB^0.7 of two Hunt-adjusted colours. L*a*b* of
+/// sRGB's primaries under D65, from tables: green 87.73, −86.18, 83.18; blue 32.30, 79.19, −107.86.
 TEST(FlipTest, OfPlainPicturesIsTheDifferenceOfTwoColors) {
   const auto hunted = [](double l, double a, double b) { return std::array{l, l / 100 * a, l / 100 * b}; };
   const auto green = hunted(87.7347, -86.1827, 83.1793), blue = hunted(32.2970, 79.1875, -107.8602);
@@ -86,7 +86,7 @@ TEST(FlipTest, OfPlainPicturesIsTheDifferenceOfTwoColors) {
   for (const float difference : flip_map(plain(9, 8, 7), plain(9, 8, 7))) EXPECT_EQ(difference, 0);
 }
 
-/// tests/twins/flip.py --print 24 16: whole two-dimensional filters in numpy.
+/// Values from tests/twins/flip.py --print 24 16: whole two-dimensional filters in numpy.
 TEST(FlipTest, IsAsTheTwinHasIt) {
   Image8 first{24, 16, {}}, second = first;
   for (std::uint32_t y = 0; y < 16; ++y) {

@@ -23,7 +23,7 @@ TEST(PixelSets, ByClassAndByAlpha) {
 }
 
 TEST(VisibilityErrorTest, OfFourPixels) {
-  // Errors +0.5, −0.25, 0, +0.03125 (all exact in float); pixel 4 is left out and wildly wrong.
+  // Errors +0.5, −0.25, 0, +0.03125 (all exact in float); pixel 4 is not judged and very wrong.
   const std::vector<float> v{0.75f, 0.25f, 1.0f, 0.53125f, 1.0f}, reference{0.25f, 0.5f, 1.0f, 0.5f, 0.0f};
   const std::vector<std::uint32_t> pixels{0, 1, 2, 3};
   const VisibilityError error = visibility_error(v, reference, pixels).value();
@@ -40,7 +40,8 @@ TEST(VisibilityErrorTest, NoPixelsNoError) {
 }
 
 TEST(VisibilityErrorTest, PercentileIsTheNearestRank) {
-  // |e| = i / 4096 for i = 0 … 1999: 0.999 · 2000 = 1998 pixels must not exceed it: the value of the 1998th, 1997.
+  // |e| = i / 4096 for i = 0 … 1999. At least 0.999 · 2000 = 1998 pixels must not exceed the percentile: it is the
+  // 1998th value, 1997.
   std::vector<float> v(2000), reference(2000, 0.0f);
   for (std::size_t i = 0; i < v.size(); ++i)
     v[(i * 7) % 2000] = static_cast<float>(i) / 4096.0f;  // 7 is coprime: shuffled
@@ -95,7 +96,7 @@ TEST(Pairs, APixelInEithersPenumbraCounts) {
   masks.reference[0] ^= 1u << 31;  // sample 31 of pixel 0
   masks.method[7] ^= 2;            // sample 33 of pixel 3
   masks.reference[2] = 5;          // samples 0 and 2 of pixel 1
-  masks.method[1] |= 0xfffffff0u;  // beyond the last sample: nothing
+  masks.method[1] |= 0xfffffff0u;  // bits beyond the last sample: must not matter
   EXPECT_EQ(count_pairs(masks.pair(), masks.pixels), (PairCounts{4UL * 34, 4UL * 34, 4}));
   EXPECT_EQ(count_pairs(masks.pair(), std::vector<std::uint32_t>{0, 2}), (PairCounts{2UL * 34, 2UL * 34, 1}));
 

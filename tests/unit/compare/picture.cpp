@@ -67,7 +67,7 @@ TEST(Pictures, BackgroundIsNeitherErrorNorV) {
 TEST(Exposure, PutsThe99thPercentileBelowWhite) {
   EXPECT_EQ(auto_exposure({}), 1);
   EXPECT_EQ(auto_exposure(std::vector<glm::vec3>(5, glm::vec3(0))), 1);
-  // 101 pixels whose largest component is 1 … 101, and black ones: 99 % of the way from the 1st to the 101st is 100.
+  // 101 pixels whose largest component is 1 … 101, and black ones: the 99th percentile of 1 … 101 is 100.
   std::vector<glm::vec3> linear(50, glm::vec3(0));
   for (int i = 101; i >= 1; --i) linear.emplace_back(0.5f, static_cast<float>(i), 0.1f);
   EXPECT_FLOAT_EQ(auto_exposure(linear), 0.009f);

@@ -27,7 +27,7 @@ TEST(Report, IsOneWellFormedPageWithoutNetwork) {
       EXPECT_NE(html.find("default-src 'none'; img-src data:;"), std::string::npos);
       EXPECT_EQ(occurrences(html, "url("), occurrences(html, "url(#"));
       EXPECT_EQ(occurrences(html, "src=\""), 0u);
-      // One script that runs; the others are data.
+      // One script runs; the others hold data.
       EXPECT_EQ(occurrences(html, "<script>"), 1u);
       EXPECT_NE(html.find("<noscript>"), std::string::npos);
     }
@@ -43,7 +43,7 @@ TEST(Report, HasAllOfMetricsJson) {
   EXPECT_EQ(tests::report_json(report_html(in)).at("metrics"), nlohmann::json(to_json(in.metrics)));
 }
 
-/// The page describes the run beside the numbers.
+/// The page describes the run next to the numbers.
 TEST(Report, DescribesSceneMethodsAndMachine) {
   ReportInput in = touchable_input(2);
   in.sampled_pixels = 400;
@@ -73,8 +73,7 @@ TEST(Report, DescribesSceneMethodsAndMachine) {
   EXPECT_TRUE(method["repairs"][0][0].at("png").get<std::string>().starts_with("data:image/png;base64,"));
 }
 
-/// The data that the script works on is there, by name, for every entry and light; a method that failed is not among
-/// them.
+/// The page has the data for its script, by name, for every entry and light, but none for a method that failed.
 TEST(Report, CarriesTheNumbersOfEachPicture) {
   ReportInput in = touchable_input(3, 2);
   in.methods[1] = {};
@@ -103,7 +102,7 @@ TEST(Report, CarriesTheNumbersOfEachPicture) {
   EXPECT_EQ(blob(data["lights"][0]["classes"]), "Q0xBU1M=");
 }
 
-/// Seconds are compared between answers to the same question alone.
+/// Seconds are compared only between methods that answer the same question as the reference.
 TEST(Report, SaysWhichMethodsWereAskedWhatTheReferenceWas) {
   const auto same = [](const ReportInput& in) {
     return tests::report_json(report_html(in)).at("methods").at(0).at("sameQuestion").get<bool>();
@@ -122,10 +121,10 @@ TEST(Report, SaysWhichMethodsWereAskedWhatTheReferenceWas) {
     in.methods[0].description.output = output;
     EXPECT_FALSE(same(in)) << visibility::name_of(output);
   }
-  in.reference.description.output = radiance;  // both areas: light samples do not matter
+  in.reference.description.output = radiance;  // both give areas: light samples do not matter
   in.metrics.reference.light_samples = 1;
   EXPECT_TRUE(same(in));
-  in.sampled_pixels = 2000;  // perhaps only of the reference
+  in.sampled_pixels = 2000;  // the reference may be sampled at some pixels only
   EXPECT_FALSE(same(in));
   in.metrics.methods[0].stats.method = in.metrics.reference.method;
   EXPECT_TRUE(same(in));
@@ -167,12 +166,12 @@ TEST(Report, EscapesEverythingThatCameFromOutside) {
   EXPECT_EQ(occurrences(html, "<script"), scripts);
   EXPECT_EQ(tests::report_json(html).at("lights").at(1).at("name"), evil);
   EXPECT_EQ(tests::report_json(html).at("metrics").at("methods").at(1).at("failure").at("message"), evil);
-  // The text is in the title, and nowhere else outside the JSON.
+  // The text is in the title, and outside the JSON nowhere else.
   EXPECT_EQ(occurrences(html, "alert(&quot;1&quot;)"), 1u);
   EXPECT_EQ(unbalanced_tag(html), "");
 }
 
-/// Masks of a reference that looked at other points than the methods did are held against none.
+/// A reference that looked at other points than the methods has masks that cannot be compared with theirs.
 TEST(Report, LeavesOutTheReferencesMasksWhereRaysHaveTheMethods) {
   ReportInput in = touchable_input(1);
   EXPECT_FALSE(tests::report_json(report_html(in))["entries"][0]["lights"][0]["masks"].is_null());
@@ -183,7 +182,7 @@ TEST(Report, LeavesOutTheReferencesMasksWhereRaysHaveTheMethods) {
   EXPECT_FALSE(data["entries"][1]["lights"][0]["masks"].is_null());
 }
 
-/// Exact methods have the same numbers: the page carries them once.
+/// Exact methods give the same numbers: the page holds them once.
 TEST(Report, CarriesEqualNumbersOnce) {
   const std::string html = report_html(touchable_input(3));
   EXPECT_EQ(occurrences(html, ">Vg==<"), 1u);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report's script unpacks what was packed: each packing is undone here in a few lines of C++.
+// Tests the packing of the report's data: each packing is undone here in a few lines of C++, as the report's script
+// does.
 #include "base/packed.hpp"
 #include "compare/report_data.hpp"
 
@@ -45,7 +46,7 @@ std::vector<std::uint8_t> unpack(const std::string& text, std::size_t size) {
   return bytes;
 }
 
-/// Number i of `count` whose bytes stand in planes, the most significant first.
+/// Returns number i of `count` numbers whose bytes are stored in planes, the most significant first.
 std::uint32_t number_at(const std::vector<std::uint8_t>& planes, std::size_t count, std::size_t i) {
   std::uint32_t number = 0;
   for (std::size_t plane = 0; plane < planes.size() / count; ++plane) number = number << 8 | planes[plane * count + i];
@@ -62,7 +63,7 @@ TEST(ReportData, Base64IsThatOfTheStandard) {
 
 TEST(ReportData, DeflatedInPartsIsDeflatedAtOnce) {
   std::vector<std::byte> bytes(300000);
-  std::mt19937 random(7);  // a quarter of it noise, so that more than one block comes out
+  std::mt19937 random(7);  // a quarter of the bytes is noise, so that there is more than one block
   for (std::size_t i = 0; i < bytes.size(); i += 4) bytes[i] = static_cast<std::byte>(random());
   Deflated whole, parts;
   whole.add(bytes);
@@ -85,14 +86,15 @@ TEST(ReportData, FloatsComeBackBitByBit) {
 }
 
 TEST(ReportData, RadianceComesBackWithinHalfAStepOfItsCode) {
-  // Five pixels a row: neighbours that differ by the whole range, black ones, a negative one, one that is no number.
+  // Five pixels in a row: neighbours that differ by the whole range, black pixels, a negative one, one that is not a
+  // number.
   const std::vector<glm::vec3> pixels{{0, 0, 0},       {1, 2, 3},          {1e-19f, 1e18f, 0.25f}, {0, 1e18f, 1e-19f},
                                       {0.3f, 0.3f, 0}, {10, 10, 10},       {9.9f, 0.001f, 5},      {-1, 0.5f, 0.5f},
                                       {NAN, 1, 1},     {0.5f, 0.25f, 1.0f}};
   const std::size_t count = pixels.size();
   const auto planes = unpack(pack_radiance(5, pixels), 6 * count);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto sum = [&](std::size_t plane) {  // of the steps from the row's first pixel to this
+    const auto sum = [&](std::size_t plane) {  // adds the steps from the row's first pixel to this one
       std::uint32_t code = 0;
       for (std::size_t k = i / 5 * 5; k <= i; ++k) code += number_at(planes, 3 * count, plane * count + k);
       return code & 0xffff;
@@ -112,7 +114,7 @@ TEST(ReportData, RadianceComesBackWithinHalfAStepOfItsCode) {
   }
 }
 
-/// Undone in C++: within two codes, 1/128 of a stop, of what was packed, and black where it was black.
+/// The radiance unpacked here is within two codes, 1/128 of a stop, of the original, and black where that is black.
 TEST(ReportData, RadianceOverTheReferencesComesBackWithinTwoCodes) {
   const std::vector<glm::vec3> reference{{1, 2, 3}, {0, 0, 0}, {1e-19f, 1e18f, 0.25f}, {0.3f, 0.3f, 0.3f}, {1, 1, 1}};
   const std::vector<glm::vec3> pixels{{1, 2, 3}, {1, 2, 3}, {0.5f, 0.25f, 1.0f}, {0.31f, 0.29f, 0.3f}, {0, -1, 1e-30f}};

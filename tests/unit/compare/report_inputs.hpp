@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Reports of made-up results, and what is asked of their pages.
+// Makes reports of invented results, and examines their pages.
 
 #include "compare/report.hpp"
 
@@ -63,11 +63,11 @@ inline ReportInput input_with(std::size_t method_count) {
   return in;
 }
 
-/// The first tag that is not closed where it should be; "" if all are.
+/// Returns the first tag that is not closed where it should be; "" if all are.
 inline std::string unbalanced_tag(const std::string& html) {
   const std::vector<std::string> never_closed{"meta", "img", "input", "br", "!DOCTYPE"};
   std::vector<std::string> open;
-  bool in_script = false;  // whose text is no markup until it ends
+  bool in_script = false;  // a script's text is not markup until it ends
   std::size_t at = 0;
   while ((at = html.find('<', at)) != std::string::npos) {
     if (in_script && html.compare(at, 9, "</script>") != 0) {
@@ -93,7 +93,7 @@ inline std::string unbalanced_tag(const std::string& html) {
   return open.empty() ? "" : open.back();
 }
 
-/// Returns input with numbers for the script: 2 × 2 pixels, masks of four light samples, `lights` lights.
+/// Returns input with numbers for the page's script: 2 × 2 pixels, masks of four light samples, `lights` lights.
 inline ReportInput touchable_input(std::size_t method_count, std::size_t light_count = 1) {
   ReportInput in = input_with(method_count);
   in.metrics.reference.width = in.metrics.reference.height = 2;

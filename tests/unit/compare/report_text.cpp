@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers, times and scenes as the report's page says them.
+// Tests how the report's page writes numbers, times and scenes.
 
 #include "compare/report.hpp"
 #include "compare/report_text.hpp"

@@ -187,7 +187,7 @@ TEST(MetricsJson, SaysHowErrorsLookAndWhatSeparationCosts) {
   EXPECT_FALSE(json[1].contains("pops"));
 }
 
-/// Every light, and a method with masks against rays on its own light samples whatever the reference is.
+/// Judges every light, and compares a method's masks with rays on its own light samples, whatever the reference is.
 TEST(MetricsJson, JudgesEachLight) {
   Metrics metrics;
   metrics.same_samples = SampleCost{some_stats(), {{"key", 10, 1, VisibilityError{.rmse = 0.0625}, {}, {}}}, {}};

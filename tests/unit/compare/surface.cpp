@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colours of surfaces: closed forms of interpolation, wrapping and filtering.
+// Colours of surfaces, compared with closed forms of interpolation, wrapping and filtering.
 #include "compare/surface.hpp"
 
 #include "compare/beauty.hpp"
@@ -36,7 +36,8 @@ struct Surface {
     samples.n.assign(points.size(), {0, 0, 1});
     samples.triangle.assign(points.size(), 0);
   }
-  /// A picture of 4 x 2 texels, red 0 or 255, whose (0, 0) is the first corner and (1, 1) beyond the triangle.
+  /// Adds a picture of 4 x 2 texels, red 0 or 255: its point (0, 0) is the triangle's first corner, and (1, 1) lies
+  /// outside the triangle.
   void paint(PictureUse use) {
     scenes::Picture picture{"p", 4, 2, {}};
     for (const int red : {0, 255, 255, 0, 255, 0, 0, 255})
@@ -70,7 +71,8 @@ TEST(Surface, PicturesAreFilteredBetweenTexelCentres) {
   stage.paint({.nearest = true});
   EXPECT_EQ(stage.reds(), (std::vector<double>{0, 1, 1, 0, 0}));
   stage.paint({});
-  const std::vector<double> expected{0, 1, 0.5, 0.25, 0.5};  // in linear light: 0 and 1 are the same there
+  const std::vector<double> expected{0, 1, 0.5, 0.25,
+                                     0.5};  // in linear light, where 0 and 1 have the same values as in sRGB
   const std::vector<double> reds = stage.reds();
   for (std::size_t i = 0; i < reds.size(); ++i) EXPECT_NEAR(reds[i], expected[i], 1e-15) << i;
 }
@@ -83,7 +85,7 @@ TEST(Surface, PicturesEndRepeatOrTurnBack) {
     return stage.reds()[0];
   };
   using Wrap = PictureUse::Wrap;
-  // Texels 0 1 1 0; one to the right of the last, and two to the left of the first.
+  // Texels 0 1 1 0; looks one to the right of the last, and two to the left of the first.
   EXPECT_EQ(red_at(1.125, Wrap::clamp), 0);
   EXPECT_EQ(red_at(1.375, Wrap::clamp), 0);
   EXPECT_EQ(red_at(1.375, Wrap::repeat), 1);
@@ -111,7 +113,7 @@ TEST(Surface, NormalsAreBetweenThoseOfVerticesOnTheViewersSide) {
   EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, false).normals.empty());
 }
 
-/// Exporters write the normals of facets, too, and round them: such a pixel is lit as if there were none.
+/// Some exporters write rounded normals of facets: such a pixel is lit as if the file had no normals.
 TEST(Surface, NormalsOfFacetsAreTheFacetsOwn) {
   Surface stage({{1, 1, 0}});
   stage.scene.looks.normals.assign(3, glm::normalize(glm::vec3(1e-6f, -2e-6f, 1)));
@@ -122,8 +124,8 @@ TEST(Surface, NormalsOfFacetsAreTheFacetsOwn) {
   EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, true).normals.empty()) << "the file has none";
 }
 
-/// A small distant light of area A and radiance 1 gives A cos cos / (π d²): the cosine is the shading normal's, by V
-/// and by form factors alike, and where the light is behind that normal there is none.
+/// A small distant light of area A and radiance 1 gives A cos cos / (π d²). The cosine at the surface is that of the
+/// shading normal, for V and for form factors alike; behind that normal the light gives nothing.
 TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {
   Surface stage({{1, 1, 0}, {1, 1, 0}, {1, 1, 0}});
   scenes::AreaLight far{"far", scenes::Rectangle{{1, 1, 1000}, {0, 0.5, 0}, {0.5, 0, 0}}, glm::dvec3(1)};
@@ -141,7 +143,7 @@ TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {
                              .normals = normals},
                             {&seen, 1});
   };
-  const double whole = 1 / (M_PI * 1e6);  // the light's size over its distance, squared, is an error of 1e-6
+  const double whole = 1 / (M_PI * 1e6);  // the neglected (light's size / distance)² is 1e-6
   const auto by_visibility = shade({.visibility = v});
   EXPECT_NEAR(by_visibility[0].x, 0.5 * whole, 2e-6 * whole);
   EXPECT_NEAR(by_visibility[1].x, 0.8 * 0.5 * whole, 2e-6 * whole);
@@ -153,15 +155,15 @@ TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {
   EXPECT_NEAR(shade({.visibility = v, .form_factors = quarter})[1].x, 0.8 * 0.25 * whole, 2e-6 * whole);
 }
 
-/// A light of 2 × 2, one above p, of which the half x < 0 is seen, on a facet whose smooth normal leans by 0.3 toward
-/// +x and by 0.2 toward +y: against the integral over 400² parts. What the facet sees of the light says more than its
-/// area.
+/// A light of 2 × 2, 1 above p, of which only the half x > 0.5 is seen, on a facet whose smooth normal leans by 0.3
+/// toward +x and by 0.2 toward +y, compared with the integral over 400² parts. The visible form factor on the facet
+/// gives a better result than the visible area.
 TEST(Surface, SmoothPixelsInPenumbrae) {
   Surface stage({{1, 1, 0}});
   stage.scene.lights = {{"near", scenes::Rectangle{{1.5, 1, 1}, {0, 1, 0}, {1, 0, 0}}, glm::dvec3(1)}};
   const visibility::Light light = visibility::make_light(stage.scene, 0, glm::dvec3(0), {});
   const glm::dvec3 facet(0, 0, 1), smooth = glm::normalize(glm::dvec3(0.3, 0.2, 1));
-  const auto integral = [](const glm::dvec3& normal, double from) {  // over the light's x from there on
+  const auto integral = [](const glm::dvec3& normal, double from) {  // over the light's x from `from` on
     constexpr int kParts = 400;
     double sum = 0;
     for (int i = 0; i < kParts * kParts; ++i) {

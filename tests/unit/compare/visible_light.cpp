@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks to form factors: runs are sums of cells, cells cover the light once, all visible is the whole to the last bit,
-// whatever the pattern and the shape.
+// Tests form factors made from masks: a run is the sum of its cells, cells cover the light once, and a fully visible
+// light gives the whole to the last bit, whatever the pattern and the shape.
 
 #include "compare/visible_light.hpp"
 #include "tests/unit/visibility/scenes.hpp"
@@ -59,7 +59,8 @@ Mask random_mask(const Light& light, std::mt19937& random) {
   return mask;
 }
 
-/// The cell of one sample of a rectangle's rows, from the light sample's own coordinates: half way to its neighbours.
+/// Returns the form factor of one sample's cell in a rectangle's rows, from the light samples' own coordinates: it ends
+/// half way to the neighbours.
 double cell(const UnshadowedLight& seen, const Light& light, std::uint32_t row, std::uint32_t column) {
   const auto s = [&](std::uint32_t c) { return light.coordinates[row * light.columns + c].x; };
   const double low = column == 0 ? -1 : (s(column - 1) + s(column)) / 2;
@@ -95,7 +96,7 @@ TEST(VisibleLight, ARunIsTheSumOfItsCells) {
 }
 
 TEST(VisibleLight, AllVisibleIsTheWholeToTheLastBit) {
-  // The last point's horizon cuts the lights: there all samples above it, and no others, are visible.
+  // With `slanted`, the horizon cuts the lights: then exactly the samples above it are visible.
   const glm::vec3 up(0, 1, 0), slanted = glm::normalize(glm::vec3(1, 0.02f, 0.1f));
   for (const char* kind : {"rectangle", "disk", "ellipse", "polygon", "sphere", "sun"}) {
     for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::grid, SamplePattern::sobol,
@@ -145,7 +146,7 @@ TEST(VisibleLight, FarFromTheLightItIsVButForTheRowsEnds) {
 }
 
 TEST(VisibleLight, SamplesOfEveryPatternConvergeToTheHalfThatIsVisible) {
-  // The half with x < 0 of a square light beside p, near enough for the halves to differ by far.
+  // The visible half is x < 0 of a square light near p, so near that the two halves differ much.
   const glm::vec3 p(-0.9f, 1.4f, 0.1f);
   const Light whole = light_of(shape("rectangle"), {1});
   const UnshadowedLight seen(whole, p, {0, 1, 0});
@@ -159,10 +160,11 @@ TEST(VisibleLight, SamplesOfEveryPatternConvergeToTheHalfThatIsVisible) {
     }
     return VisibleLight(light).visible({UnshadowedLight(light, p, {0, 1, 0}), p}, mask).x;
   };
-  // A grid of an even number of columns has a border at x = 0: its cells are the half itself.
+  // A grid with an even number of columns has a border between cells at x = 0: the cells of the half cover it exactly.
   EXPECT_NEAR(value(SamplePattern::grid, 16), expected, 16 * kUlp);
   for (const SamplePattern pattern : {SamplePattern::rows, SamplePattern::sobol, SamplePattern::jittered}) {
-    // Off by at most the form factor of a band half a cell of 64 wide at x = 0 (runs); for samples, one cell.
+    // The error is at most the form factor of a band at x = 0, half a cell (of 64 in a row) wide for runs, one cell for
+    // samples.
     EXPECT_NEAR(value(pattern, 4096), expected, seen.box({-1.0 / 32, -1}, {1.0 / 32, 1})) << name_of(pattern);
   }
 }
@@ -175,7 +177,7 @@ TEST(VisibleLight, ATexturesColoursAreWeighedWithTheirSamples) {
   const glm::vec3 p(0.5f, 0.5f, 0.25f);
   const UnshadowedLight seen(light, p, {0, 1, 0});
   const glm::dvec3 all = visible.unshadowed({seen, p});
-  // Midpoint rule on cells of 3/32 at a distance of 1.5 or more: relative error below (size / distance)² / 6.
+  // Midpoint rule on cells of size 3/32 at a distance of 1.5 or more: relative error below (size / distance)² / 6.
   EXPECT_NEAR(all.x / 4, seen.box({-1, -1}, {0, 1}), 1e-3 * all.x);
   EXPECT_NEAR(all.y * 2, seen.box({0, -1}, {1, 1}), 1e-3 * all.y);
   EXPECT_NEAR(all.x / 4 + all.y * 2, seen.whole(), 16 * kUlp);
@@ -199,7 +201,7 @@ TEST(UnshadowedLight, OnlyFromWhereItEmits) {
 }
 
 TEST(UnshadowedLight, OnALatticeEveryFormFactorIsOneAndPartsAddUp) {
-  // Elements on edges, corners and planes of lights, edges through the element, horizons along edges.
+  // Elements on edges, corners and planes of lights; edges through the element; horizons along edges.
   constexpr unsigned kSeed = 11;
   std::mt19937 random(kSeed);
   const auto lattice = [&] { return static_cast<int>(random() % 5) - 2; };

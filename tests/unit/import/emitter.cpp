@@ -39,8 +39,7 @@ struct AddCorners {
   void operator()(const auto& /*round*/) const {}
 };
 
-/// Returns the corners of the emitter's pieces, counter-clockwise; of a light in one piece, that piece's. None of a
-/// sphere.
+/// Returns the corners of the emitter's pieces, or of its only piece, counter-clockwise. Spheres have none.
 std::vector<std::vector<glm::dvec3>> outlines_of(const import::Emitter& emitter) {
   std::vector<std::vector<glm::dvec3>> all;
   std::visit(AddCorners{all}, emitter.shape);
@@ -60,7 +59,7 @@ std::size_t rectangles_in(const import::Emitter& emitter) {
       std::ranges::count_if(pieces, [](const auto& piece) { return std::holds_alternative<Rectangle>(piece); }));
 }
 
-/// Each triangle's middle is in exactly one piece, which faces as it does; areas add up; pieces are convex.
+/// Each triangle's middle is in exactly one piece, which faces the same side; areas add up; pieces are convex.
 void expect_covered(const LampMesh& lamp, const import::Emitter& emitter) {
   const auto outlines = outlines_of(emitter);
   double area = 0;
@@ -103,7 +102,7 @@ TEST(Emitter, ACubeIsSixRectanglesThatShineOutward) {
       for (const auto& corners : outlines_of(emitter))
         EXPECT_GT(glm::dot(vector_area(corners), corners[0] - glm::dvec3(1, 2, 3)), 0) << "outward";
     }
-    const import::Emitter room = emitter_of(cube);  // turned inward, and one-sided
+    const import::Emitter room = emitter_of(cube);  // faces inward, and is one-sided
     EXPECT_TRUE(room.hides_itself);
     for (const auto& corners : outlines_of(room))
       EXPECT_LT(glm::dot(vector_area(corners), corners[0] - glm::dvec3(1, 2, 3)), 0);
@@ -112,7 +111,7 @@ TEST(Emitter, ACubeIsSixRectanglesThatShineOutward) {
 }
 
 TEST(Emitter, FlatOutlinesThatAreNotConvexAreCut) {
-  for (const double size : {2.0, 0.002}) {  // its dents are far deeper than rounding
+  for (const double size : {2.0, 0.002}) {  // its dents are far deeper than rounding errors
     const LampMesh star = test::star_lamp({0, 5, 0}, size, 0.4 * size, 5);
     const import::Emitter emitter = emitter_of(star, true);
     expect_covered(star, emitter);
@@ -134,7 +133,7 @@ TEST(Emitter, FlatOutlinesThatAreNotConvexAreCut) {
   EXPECT_EQ(rectangles_in(emitter_of(frame)), outlines_of(emitter_of(frame)).size());
 }
 
-/// However little an outline bends inward, beyond rounding: its two triangles do not join.
+/// An outline that bends inward a little, but by more than rounding, is cut: its two triangles do not join.
 TEST(Emitter, OutlinesThatBendInwardALittleAreCut) {
   for (const double dent : {0.3, 0.01, 1e-4}) {
     LampMesh dart;
@@ -182,7 +181,7 @@ TEST(Emitter, SpheresWhereTheMeshIsFineEnough) {
 }
 
 TEST(Emitter, WhatAClosedMeshEnclosesIsNotSeen) {
-  LampMesh shell = test::cube_lamp({0, 0, 0}, 1);  // as Solidify makes it of a box
+  LampMesh shell = test::cube_lamp({0, 0, 0}, 1);  // as Blender's Solidify modifier makes it from a box
   LampMesh inner = test::cube_lamp({0, 0, 0}, 0.9);
   inner.turn();
   for (const mesh::Triangle& t : inner.triangles)
@@ -195,7 +194,7 @@ TEST(Emitter, WhatIsThereTwiceShinesOnce) {
   panel.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   panel.add({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   EXPECT_EQ(outlines_of(emitter_of(panel)).size(), 1U);
-  panel.add({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}});  // its back
+  panel.add({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}});  // its back side
   EXPECT_EQ(outlines_of(emitter_of(panel)).size(), 2U);
   EXPECT_EQ(outlines_of(emitter_of(panel, true)).size(), 1U);
   EXPECT_TRUE(emitter_of(panel, true).two_sided);

@@ -68,7 +68,7 @@ TEST(FlatLight, SplitVerticesAndSubdivisionChangeNothing) {
   const import::FlatLight light = recognise(grid, triangles);
   ASSERT_TRUE(std::holds_alternative<Rectangle>(light));
   EXPECT_NEAR(glm::length(glm::cross(std::get<Rectangle>(light).half_u, std::get<Rectangle>(light).half_v)), 2, 1e-9);
-  triangles.push_back({0, 0, 5});  // no area, no harm
+  triangles.push_back({0, 0, 5});  // a triangle without area, which does no harm
   EXPECT_TRUE(std::holds_alternative<Rectangle>(recognise(grid, triangles)));
 }
 

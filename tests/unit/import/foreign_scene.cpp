@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FBX and COLLADA files as scenes: nodes, materials, lamps, cameras; and formats that are not read.
+// Tests FBX and COLLADA files as scenes: nodes, materials, lamps, cameras; and formats that are not read.
 #include "scenes/formats/reader.hpp"
 
 #include "tests/unit/mesh/import_files.hpp"
@@ -30,7 +30,7 @@ class ForeignScenes : public test::FileTest {
   }
 };
 
-/// A unit square in the XY plane, `effect` its material's, and what else `nodes` of the scene say.
+/// A COLLADA file with a unit square in the XY plane, whose material is `effect`, and the further `nodes` of the scene.
 std::string collada(const std::string& effect, const std::string& libraries, const std::string& nodes,
                     const std::string& tool = "Maya") {
   return fmt::format(
@@ -73,7 +73,7 @@ TEST_F(ForeignScenes, ColladaHasColoursLampsAndCameras) {
   const auto& bulb = std::get<Sphere>(light(scene, "Bulb").shape);
   EXPECT_EQ(bulb.center, glm::dvec3(1, 2, 3));
   EXPECT_EQ(bulb.radius, 0.5);
-  // 8 candela of a sphere seen from afar: radiance times π r².
+  // 8 candela from a sphere seen from afar: its radiance times π r².
   EXPECT_NEAR(light(scene, "Bulb").radiance.x * std::numbers::pi * 0.25, 8, 1e-6);
   EXPECT_NEAR(light(scene, "Bulb").radiance.z * std::numbers::pi * 0.25, 2, 1e-6);
   EXPECT_NEAR(glm::distance(std::get<Sun>(light(scene, "Sun").shape).direction, glm::dvec3(0, -1, 0)), 0, 1e-6);
@@ -92,7 +92,7 @@ TEST_F(ForeignScenes, ColladaHasColoursLampsAndCameras) {
   EXPECT_NEAR(upright.cameras.at(0).vertical_fov, 90, 1e-4);
   EXPECT_NEAR(*upright.cameras[0].aspect, 2, 1e-6);
 
-  // Blender has watts: a point lamp's candela are 1 / 4π of them.
+  // Blender gives watts: a point lamp's candela are its watts / 4π.
   const Scene blenders = read_scene(
       write("b.dae", collada("<diffuse><color>1 1 1 1</color></diffuse>", kLamps, kLampNodes, "Blender 3.4.1")),
       options);
@@ -109,7 +109,7 @@ TEST_F(ForeignScenes, EmissiveMeshesAreLights) {
   EXPECT_EQ(scene.objects.at(0).emits, 0u);
 
   std::string bent = collada("<emission><color>4 2 1 1</color></emission>", "", "");
-  bent.replace(bent.find("1 1 0 0 1 0"), 5, "1 1 1");  // into two triangles, of which each shines at the other's back
+  bent.replace(bent.find("1 1 0 0 1 0"), 5, "1 1 1");  // into two triangles, each of which shines at the other's back
   const auto file = write("bent.dae", bent);
   EXPECT_THAT(test::input_error([&] { read_scene(file); }),
               HasSubstr("'Card' is an emitter with parts that shadow one another"));
@@ -120,7 +120,8 @@ TEST_F(ForeignScenes, EmissiveMeshesAreLights) {
   EXPECT_THAT(bright.warnings, Contains(HasSubstr("'Card' is an emitter with parts")));
 }
 
-/// Assimp gives a mesh without a material the file's first one; only a symbol that is a material's id is that material.
+/// Assimp gives a mesh without a material the file's first one. Only a symbol that is the id of a material counts as
+/// one.
 TEST_F(ForeignScenes, MeshesWithoutMaterialsAreGreyAndDark) {
   std::string text =
       collada("<emission><color>4 2 1 1</color></emission><diffuse><color>1 0 0 1</color></diffuse>", "",
@@ -174,7 +175,7 @@ TEST_F(ForeignScenes, WhatCannotBeDoneIsNamedWhereAStudioLights) {
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("a studio was put around it")));
 }
 
-/// Formats of which meshes alone are read name what lets light through.
+/// Formats of which only meshes are read report materials that let light through.
 TEST_F(ForeignScenes, SolidMaterialsOfMeshesAreNamed) {
   write("some library.mtl",
         "newmtl Glass\nKd 1 1 1\nd 0.3\nnewmtl Leaf\n map_d leaf.png\nnewmtl Wood\nd 1.0\nnewmtl Ghost\nTr 0.5\n");

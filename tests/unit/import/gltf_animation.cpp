@@ -67,8 +67,8 @@ TEST_F(GltfAnimation, LinearStepAndCubic) {
   EXPECT_EQ(corner(step, 1.99), glm::dvec3(1, 0, 0));
   EXPECT_EQ(corner(step, 2), glm::dvec3(2, 0, 0));
   EXPECT_EQ(corner(step, 3), glm::dvec3(5, 0, 0));
-  // Fields are in-tangent, value, out-tangent of two keys two seconds apart. The curve without slopes is 3 t² − 2 t³;
-  // with the line's own slope it is the line; with one slope m at the beginning, that and 2 m (t³ − 2 t² + t).
+  // Values are in-tangent, value and out-tangent of two keys two seconds apart. Without slopes the curve is 3 t² − 2
+  // t³; with the line's own slope it is the line; with a slope m only at the beginning, 2 m (t³ − 2 t² + t) is added.
   const auto cubic = [&](float out, float in, double time) {
     Gltf gltf;
     gltf.animate(0, "translation", {1, 3}, {0, 0, 0, 0, 0, 0, out, 0, 0, in, 0, 0, 8, 0, 0, 0, 0, 0}, "CUBICSPLINE");
@@ -99,8 +99,8 @@ TEST_F(GltfAnimation, LightsCamerasAndChildrenMove) {
   EXPECT_EQ(scene.cameras[0].eye, glm::dvec3(1, 8, 8));
 }
 
-/// One parse gives the scenes that a parse each gives, to the last bit, also where scales of nothing and morph targets
-/// come and go.
+/// One parse gives the same scenes, to the last bit, as a parse for each; also if objects are scaled to zero or morph
+/// targets are active at some times only.
 TEST_F(GltfAnimation, ScenesReadAheadAreThoseReadAlone) {
   Gltf gltf;
   gltf.at("/meshes/0/primitives/0")["targets"] = {{{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 2, 0, 0, 0, 0, 0})}}};
@@ -145,13 +145,13 @@ TEST_F(GltfAnimation, ScenesReadAheadAreThoseReadAlone) {
   EXPECT_THAT(ahead.kept, IsEmpty()) << "a scene without animation is the same at all times";
 }
 
-/// World space less the origin must not jump: the origin is that of the scene at rest, whatever the time.
+/// World space is relative to the origin and must not jump: the origin is that of the scene at rest, whatever the time.
 TEST_F(GltfAnimation, TheOriginRests) {
   Gltf gltf;
   gltf.animate(0, "translation", {0, 1}, {0, 0, 0, 100, 0, 0});
   const Scene at_rest = read(gltf);
   EXPECT_FALSE(at_rest.origin) << "the middle of what is there";
-  const glm::dvec3 middle(0, 2.5, 0);  // of the lamp from −1 to 1 at a height of 5, and the body from 0 to 1
+  const glm::dvec3 middle(0, 2.5, 0);  // middle of the lamp from −1 to 1 at a height of 5, and of the body from 0 to 1
   for (const double time : {0.0, 0.25, 1.0}) EXPECT_EQ(read(gltf, time).origin, middle) << time;
   gltf.at("/meshes/0/primitives/0")["targets"] = {
       {{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 50, 0, 0, 0, 0, 0})}}};
@@ -174,7 +174,7 @@ TEST_F(GltfAnimation, MorphTargetsAreAddedByWeight) {
   EXPECT_THAT(read(gltf, 0.5).warnings, IsEmpty());
 }
 
-/// Two joints: node 3 stands still, node 4 turns; the body's corners follow one, the other, and both.
+/// Two joints: node 3 stands still, node 4 moves. The body's corners follow node 3, node 4, and both.
 Gltf skinned(const std::vector<float>& weights) {
   Gltf gltf;
   gltf.at("/nodes").push_back({{"name", "Hip"}});
@@ -182,7 +182,7 @@ Gltf skinned(const std::vector<float>& weights) {
   gltf.at("/scenes/0/nodes") = {0, 1, 2, 3, 4};
   std::vector<float> bind(32, 0);
   for (const std::size_t i : {0u, 5u, 10u, 15u, 16u, 21u, 26u, 31u}) bind[i] = 1;
-  bind[16 + 14] = -3;  // the knee was bound where it is
+  bind[16 + 14] = -3;  // the knee was bound at the place where it is
   gltf.document["skins"] = {{{"joints", {3, 4}}, {"inverseBindMatrices", gltf.add_floats("MAT4", bind)}}};
   gltf.at("/nodes/0")["skin"] = 0;
   auto& attributes = gltf.at("/meshes/0/primitives/0/attributes");
@@ -192,9 +192,9 @@ Gltf skinned(const std::vector<float>& weights) {
 }
 
 TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
-  // The second corner follows the knee; the third halfway, by weights that do not add up to 1.
+  // The second corner follows the knee; the third follows it halfway, by weights that do not add up to 1.
   Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0.25f, 0.25f, 0, 0});
-  gltf.at("/nodes/0")["translation"] = {50, 60, 70};  // the mesh's own place is none of a skin's business
+  gltf.at("/nodes/0")["translation"] = {50, 60, 70};  // a skin ignores the transform of the mesh's own node
   EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0)) << "bound where it is modelled";
   gltf.animate(4, "translation", {0, 1}, {0, 0, 3, 8, 0, 3});
   const Scene scene = read(gltf, 0.5);
@@ -202,7 +202,7 @@ TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
   EXPECT_EQ(scene.soup.positions[1], glm::dvec3(5, 0, 0));
   EXPECT_EQ(scene.soup.positions[2], glm::dvec3(2, 1, 0));
   EXPECT_THAT(scene.warnings, IsEmpty());
-  // The mesh at rest, where its skin does not bend it, is where its node is.
+  // For the origin, a mesh at rest is where its node is, as if its skin did not bend it.
   EXPECT_EQ(scene.origin, glm::dvec3((51 - 1) / 2.0, (61 + 5) / 2.0, (70 + 1) / 2.0 - 1));
 }
 
@@ -214,7 +214,7 @@ TEST_F(GltfAnimation, SkinsNeedNoBindMatrices) {
   EXPECT_THAT(read(gltf).warnings, IsEmpty());
 }
 
-/// A light without a body is in no box, whether the file is read at a time or as it lies.
+/// The outline of a light without a body does not count for the origin, whether the file is read at a time or at rest.
 TEST_F(GltfAnimation, OutlinesOfLightsMoveNoOrigin) {
   Gltf gltf;
   gltf.at("/nodes/1")["extras"] = {{"body", false}};
@@ -229,7 +229,8 @@ TEST_F(GltfAnimation, OutlinesOfLightsMoveNoOrigin) {
   EXPECT_EQ(read(gltf, 1).origin, std::optional(glm::dvec3(0.5, 0.5, 0)));
 }
 
-/// However nodes are scaled, a lamp is at their transform of its node's origin; animation elsewhere changes nothing.
+/// Whatever the scales of its nodes, a lamp is where their transforms put its node's origin; animation of other nodes
+/// changes nothing.
 TEST_F(GltfAnimation, LampsUnderWhatIsScaledToNothingStay) {
   for (const bool animated : {false, true}) {
     Gltf gltf;
@@ -247,7 +248,7 @@ TEST_F(GltfAnimation, LampsUnderWhatIsScaledToNothingStay) {
   }
 }
 
-/// A skinned lamp is where its joints are, and hidden where they are scaled to nothing.
+/// A skinned lamp is where its joints are, and dark while they are scaled to zero.
 TEST_F(GltfAnimation, ALampWhoseJointsAreScaledToNothingIsDark) {
   Gltf gltf = skinned({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
   gltf.at("/meshes/0/primitives/0")["material"] = 1;
@@ -265,7 +266,7 @@ TEST_F(GltfAnimation, ALampWhoseJointsAreScaledToNothingIsDark) {
   for (const glm::dvec3& p : hidden.soup.positions) EXPECT_EQ(p, hidden.soup.positions.front()) << "nothing is seen";
 }
 
-/// The usual way to hide a lamp: its scale is keyed to 0.
+/// The usual way to hide a lamp: keys that set its scale to 0.
 TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
   for (const bool by_parent : {false, true}) {
     Gltf gltf;
@@ -290,7 +291,7 @@ TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
     EXPECT_EQ(after.center, glm::dvec3(0, 5.5, 0)) << "where it is by then";
     EXPECT_THAT(shown.warnings, IsEmpty());
     EXPECT_THAT(hidden.warnings, ::testing::ElementsAre("'Lamp' is scaled to zero: its light is dark"));
-    // The body is invisible, and still the light's own body.
+    // The body is invisible, and still belongs to the light.
     ASSERT_EQ(hidden.objects.size(), shown.objects.size());
     EXPECT_EQ(hidden.objects[1].emits, std::optional(0u));
     for (const mesh::Triangle& t : hidden.soup.triangles) {
@@ -298,11 +299,12 @@ TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
       for (const std::uint32_t v : t) EXPECT_EQ(hidden.soup.positions[v], glm::dvec3(0, by_parent ? 0 : 5.5, 0));
     }
   }
-  // A plane that is squashed along its normal has lost nothing.
+  // A plane squashed along its normal keeps its area.
   Gltf flat;
   flat.animate(1, "scale", {0, 1}, {1, 1, 1, 1, 0, 1}, "STEP");
   EXPECT_EQ(read(flat, 2).lights[0].radiance, glm::dvec3(20, 10, 0));
-  // One that rests at 0 is as large as its mesh; without any animation a scale of 0 is a mistake.
+  // A lamp of scale 0 at rest is as large as its mesh if it is animated; without any animation a scale of 0 is a
+  // mistake.
   Gltf dark;
   dark.at("/nodes/1")["scale"] = {0, 0, 0};
   EXPECT_THAT(refusal(dark), HasSubstr("'Lamp' (it has no area)"));
@@ -343,7 +345,7 @@ TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   expect(gltf, "joint 1 of 1");
 }
 
-/// Two keys at one time are a jump: the later one holds from then on.
+/// Two keys at one time are a jump: the later one holds from that time on.
 TEST_F(GltfAnimation, JumpsAtTwoKeysOfOneTime) {
   Gltf gltf;
   gltf.animate(0, "translation", {0, 1, 1, 2}, {0, 0, 0, 1, 0, 0, 5, 0, 0, 7, 0, 0});
@@ -356,7 +358,7 @@ TEST_F(GltfAnimation, JumpsAtTwoKeysOfOneTime) {
   EXPECT_EQ(corner(first, 1), glm::dvec3(9, 4, 0));
 }
 
-/// Exporters before Blender 3.2 wrote vertices without weights: they stay with their node.
+/// Exporters before Blender 3.2 wrote vertices without weights: they move with their node.
 TEST_F(GltfAnimation, VerticesWithoutWeightsMoveWithTheirNode) {
   Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0});
   gltf.at("/nodes/0")["translation"] = {0, 0, 9};
@@ -365,8 +367,8 @@ TEST_F(GltfAnimation, VerticesWithoutWeightsMoveWithTheirNode) {
   EXPECT_THAT(scene.warnings, Contains("'Body' has vertices that no joint moves; they move with their node"));
 }
 
-/// Clips of one object move the same: the first is played, or the one that is asked for. What moves something else is
-/// an object's own and is played, too.
+/// Of clips that move the same objects only one is played: the first, or the requested one. A clip that moves other
+/// objects is played, too.
 TEST_F(GltfAnimation, OneOfSeveralClips) {
   Gltf gltf;
   gltf.animate(0, "translation", {0, 1}, {1, 0, 0, 1, 0, 0});

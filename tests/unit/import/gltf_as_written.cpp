@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF as exporters write it: what is not strictly valid, or not in the core, and is read all the same.
+// Tests files as exporters write them: not strictly valid, or with extensions of the core, but read all the same.
 #include "tests/unit/import/gltf_reader.hpp"
 
 #include <glm/geometric.hpp>
@@ -40,7 +40,7 @@ class GltfAsWritten : public GltfReader {
   }
 };
 
-/// The resource's length must be at least byteLength.
+/// A buffer may be longer than its byteLength, but not shorter.
 TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
   Gltf gltf;
   const std::size_t size = gltf.data.size();
@@ -51,7 +51,7 @@ TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
     gltf.at("/buffers/0/uri") = fmt::format("data:{};base64,{}", type, base64(gltf.data + "and more"));
     EXPECT_EQ(read_text(gltf).soup.triangles.size(), 3u) << type;
   }
-  // base64 in lines, as Python's encodebytes writes it, and with percent signs.
+  // base64 broken into lines, as Python's encodebytes writes it, and with percent escapes.
   std::string lines = base64(gltf.data), percent = lines;
   lines.insert(20, "\n");
   for (std::size_t at = percent.find('A'); at < 60; at = percent.find('A', at + 1)) percent.replace(at, 1, "%41");
@@ -59,7 +59,7 @@ TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
     gltf.at("/buffers/0/uri") = "data:application/octet-stream;base64," + text;
     EXPECT_EQ(read_text(gltf).soup.triangles.size(), 3u) << text;
   }
-  // A plus sign is no blank.
+  // A plus sign does not stand for a space.
   write("a+b.bin", gltf.data);
   write("a b.bin", std::string(gltf.data.size(), '\0'));
   gltf.at("/buffers/0/uri") = "a+b.bin";
@@ -69,10 +69,10 @@ TEST_F(GltfAsWritten, BuffersMayBeLongerThanTheySay) {
   EXPECT_THAT(refusal_of_text(gltf), HasSubstr("short.bin"));
 }
 
-/// A percent sign that begins no escape, or one of a file's own name.
+/// A percent sign may begin no escape, or be part of the file's own name.
 TEST_F(GltfAsWritten, PercentSignsOfNames) {
   Gltf gltf;
-  Gltf moved;  // other content: the triangle's second vertex
+  Gltf moved;  // different content: the triangle's second vertex
   moved.data.replace(12, 4, bytes_of(2.f));
   const auto second = [&](const std::string& uri) {
     gltf.at("/buffers/0") = {{"byteLength", gltf.data.size()}, {"uri", uri}};
@@ -93,7 +93,7 @@ TEST_F(GltfAsWritten, PercentSignsOfNames) {
   write("100%.bin%00", gltf.data);
   gltf.at("/buffers/0/uri") = "50 .bin%00x";
   EXPECT_THAT(refusal_of_text(gltf), HasSubstr("50 .bin%00x"));
-  // and of pictures
+  // The same for pictures.
   write("75%.png", "no picture");
   Gltf painted;
   painted.document["images"] = {{{"uri", "75%.png"}}};
@@ -115,7 +115,7 @@ TEST_F(GltfAsWritten, LeastVersions) {
   EXPECT_EQ(read(gltf).soup.triangles.size(), 3u) << "a later file that asks for no more than 2.0";
 }
 
-/// A node with both is not valid; the matrix counts, as in three.js and Blender.
+/// A node with a matrix and separate parts is not valid; the matrix counts, as in three.js and Blender.
 TEST_F(GltfAsWritten, MatricesBesideParts) {
   Gltf gltf;
   gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1};
@@ -139,7 +139,7 @@ TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
   const std::string text = gltf.document.dump();
   const auto cut_off = write("scene.gltf", text.substr(0, text.find(secret) + 60));
   EXPECT_THAT(test::input_error([&] { read_gltf(cut_off); }), Not(HasSubstr("QQQQQQQQ")));
-  // A picture of a kind that is not read is only one that cannot be shown.
+  // A picture of a format that is not read is just not shown.
   for (const char* type : {"data:image/webp;base64,", "data:image/svg+xml,%3Csvg%3E"}) {
     Gltf painted;
     painted.document["images"] = {{{"uri", type + secret}}};
@@ -151,10 +151,10 @@ TEST_F(GltfAsWritten, NoMessageRepeatsADataUri) {
   }
 }
 
-/// Chunks that are not padded, that are padded without being counted, that are empty, or of a kind that nobody knows.
+/// Chunks that are not padded, padded without counting the padding, empty, or of an unknown type.
 TEST_F(GltfAsWritten, ChunksOfGlbs) {
   Gltf gltf;
-  gltf.data += "x";  // no multiple of four
+  gltf.data += "x";  // the size is not a multiple of four
   const std::size_t views = gltf.document["bufferViews"].size();
   gltf.at("/buffers/0")["byteLength"] = gltf.data.size();
   const std::string text = gltf.document.dump();
@@ -189,7 +189,7 @@ TEST_F(GltfAsWritten, ChunksOfGlbs) {
   EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("first chunk is not its JSON"));
 }
 
-/// Products that exporters compute in single precision.
+/// Exporters compute products in single precision: small deviations are no errors.
 TEST_F(GltfAsWritten, SinglePrecisionIsNoFault) {
   Gltf gltf;
   gltf.at("/nodes/0")["matrix"] = {1, 0, 0, 0, 0, 1, 0, -1e-7, 0, 0, 1, 0, 5, 0, 0, 0.9999999};
@@ -204,7 +204,7 @@ TEST_F(GltfAsWritten, SinglePrecisionIsNoFault) {
   EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/matrix: its last row must be 0 0 0 1"));
 }
 
-/// Numbers that nobody uses may be anything; those of a triangle may not.
+/// Numbers that are not used may be anything; those of a triangle must be finite.
 TEST_F(GltfAsWritten, NumbersThatAreNotFinite) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   Gltf gltf;
@@ -217,7 +217,7 @@ TEST_F(GltfAsWritten, NumbersThatAreNotFinite) {
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.looks.normals[1], glm::vec3(0)) << "none: the triangle is flat";
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Body' has normals that are not finite")));
-  // A target's normals move nothing where there are none.
+  // Normals of a morph target do nothing if the mesh has none.
   Gltf morphing;
   morphing.at("/meshes/0/primitives/0")["targets"] = {{{"NORMAL", morphing.add_floats("VEC3", std::vector<float>(9))}}};
   morphing.at("/meshes/0")["weights"] = {1};
@@ -226,7 +226,7 @@ TEST_F(GltfAsWritten, NumbersThatAreNotFinite) {
   EXPECT_THAT(refusal(gltf), HasSubstr("POSITION: vertex 1 is not finite: (nan, 0, 0)"));
 }
 
-/// An index of 2³² or more is no index modulo 2³².
+/// An index of 2³² or more must not wrap around modulo 2³².
 TEST_F(GltfAsWritten, IndicesBeyondThirtyTwoBits) {
   constexpr std::uint64_t kWhole = std::uint64_t{1} << 32;
   const auto expect = [&](auto change, const std::string& what) {
@@ -257,7 +257,7 @@ TEST_F(GltfAsWritten, DracoWithACopyIsThatCopy) {
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'/meshes/0/primitives/0' is compressed")));
 }
 
-/// EXT_mesh_gpu_instancing: the node's mesh at each element, and none at the node itself.
+/// EXT_mesh_gpu_instancing: the node's mesh appears once for each element, and not at the node itself.
 TEST_F(GltfAsWritten, InstancesOfANode) {
   Gltf gltf;
   gltf.at("/nodes/0")["translation"] = {10, 0, 0};
@@ -286,7 +286,7 @@ TEST_F(GltfAsWritten, InstancesOfANode) {
   EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has an empty list of instances")));
 }
 
-/// KHR_node_visibility: neither the node nor what is below it; joints and cameras are no less where they are.
+/// KHR_node_visibility hides the node and its children; joints and cameras stay where they are.
 TEST_F(GltfAsWritten, NodesThatAreNotVisible) {
   Gltf gltf;
   gltf.at("/scenes/0/nodes") = {0, 1};
@@ -303,7 +303,7 @@ TEST_F(GltfAsWritten, NodesThatAreNotVisible) {
   EXPECT_EQ(read(gltf).objects.size(), 3u);
 }
 
-/// Names in a code page of Windows, backslashes between folders, a byte order mark.
+/// Names in a Windows code page, backslashes between folders, a byte order mark.
 TEST_F(GltfAsWritten, TextOfWindows) {
   Gltf gltf;
   std::filesystem::create_directory(folder_ / "parts");

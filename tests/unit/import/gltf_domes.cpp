@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Domes of extras: what glTF has no word for.
+// Tests domes in extras, which core glTF cannot express.
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "tests/unit/import/gltf_reader.hpp"
@@ -19,13 +19,13 @@ using nlohmann::json;
 using test::Gltf;
 using ::testing::HasSubstr;
 
-/// Node 0, which stays a mesh, with a dome and this transform.
+/// Makes node 0 a dome with this rotation; node 0 is also a mesh.
 Gltf with_dome(const json& dome, const json& rotation = {0, 0, 0, 1}) {
   Gltf gltf;
   gltf.at("/scenes/0/nodes") = {0, 2};
   gltf.at("/nodes/0")["extras"] = {{"dome", dome}};
   gltf.at("/nodes/0")["rotation"] = rotation;
-  gltf.at("/nodes/0")["translation"] = {5, 6, 7};  // means nothing
+  gltf.at("/nodes/0")["translation"] = {5, 6, 7};  // must not matter for a dome
   gltf.at("/nodes/0")["scale"] = {2, 3, 4};
   return gltf;
 }
@@ -52,8 +52,8 @@ TEST_F(GltfReader, DomesOfExtras) {
   EXPECT_FALSE(read(plain).lights[0].visible);
 }
 
-/// Turns about an axis are quaternions by half of the angle. About +Y it is `rotate` itself; about +X or +Z the
-/// shortest turn of `up`, so no `rotate`; first about +Y, then about +X, both.
+/// A turn about an axis is a quaternion of half the angle. A turn about +Y gives `rotate`; one about +X or +Z turns
+/// `up` by the shortest arc and gives no `rotate`; a turn about +Y and then about +X gives both.
 TEST_F(GltfReader, DomesAreTurnedByTheirNodes) {
   const double c = std::cos(glm::radians(20.0)), s = std::sin(glm::radians(20.0));  // 40 degrees
   const auto read_turned = [&](const json& rotation) {

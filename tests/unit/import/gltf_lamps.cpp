@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lamps of glTF scenes: KHR_lights_punctual.
+// Tests lamps of glTF scenes: KHR_lights_punctual.
 #include "scenes/formats/gltf_reader.hpp"
 
 #include "tests/unit/import/gltf_reader.hpp"
@@ -20,7 +20,7 @@ using test::Gltf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-/// A lamp of KHR_lights_punctual at node 0, which stays a mesh, too.
+/// Makes node 0 a lamp of KHR_lights_punctual; node 0 is also a mesh.
 Gltf with_lamp(const json& lamp) {
   Gltf gltf;
   gltf.at("/asset/generator") = "somebody else";
@@ -35,8 +35,8 @@ Gltf with_lamp(const json& lamp) {
   return gltf;
 }
 
-/// Units of the extension: lux of what faces a sun is π sin²(angle / 2) times its radiance, candela of a sphere π r²
-/// times.
+/// The extension's units: lux on a surface that faces a sun is π sin²(angle / 2) times the sun's radiance; candela are
+/// π r² times a sphere's radiance.
 TEST_F(GltfReader, LampsBecomeSunsAndSpheres) {
   Gltf directional =
       with_lamp({{"type", "directional"}, {"intensity", 3}, {"color", {1, 0.5, 0.25}}, {"extras", {{"angle", 60}}}});
@@ -72,7 +72,8 @@ TEST_F(GltfReader, LampsBecomeSunsAndSpheres) {
   EXPECT_THAT(shown.warnings, Contains(HasSubstr("range of 1 lamps ignored")));
 }
 
-/// Blender's exporter has 683 lumens for a watt of its lamps, but none for emission, and angles for its cones' cosines.
+/// Blender's exporter writes 683 lumens for each watt of a lamp, but without that factor for emission; and it writes
+/// angles where Blender blends the cosines of a cone.
 TEST_F(GltfReader, LampsOfBlenderAreAsInBlender) {
   const auto from_blender = [](Gltf gltf) {
     gltf.at("/asset/generator") = "Khronos glTF Blender I/O v3.4.50";
@@ -97,7 +98,7 @@ TEST_F(GltfReader, LampsOfBlenderAreAsInBlender) {
     spot = from_blender(spot);
     return *std::get<Sphere>(read(spot).lights.at(0).shape).cone;
   };
-  const Cone half = cone(outer / 2);  // a blend of 0.5: from cos 60° = 0.5 on to 0.75
+  const Cone half = cone(outer / 2);  // a blend of 0.5: from cos 60° = 0.5 to 0.75
   EXPECT_TRUE(half.smooth);
   EXPECT_NEAR(std::cos(half.inner * M_PI / 180), 0.75, 1e-12);
   EXPECT_NEAR(half.outer, 60, 1e-12);
@@ -125,7 +126,7 @@ TEST_F(GltfReader, LampsWithoutASizeTakeTheUsersOrAWarning) {
   }
 }
 
-/// Blender's exporter before version 3.4.36 wrote a lamp's power as Blender has it: in watts, for a sun in watts a
+/// Blender's exporter before version 3.4.36 wrote a lamp's power in Blender's units: watts, and for a sun watts per
 /// square metre.
 TEST_F(GltfReader, LampsOfOlderBlendersAreInWatts) {
   const auto radiance = [&](const std::string& version, const json& lamp) {
@@ -138,7 +139,7 @@ TEST_F(GltfReader, LampsOfOlderBlendersAreInWatts) {
   const json point = {{"type", "point"}, {"intensity", 100}, {"extras", {{"radius", 1}}}};
   const json sun = {{"type", "directional"}, {"intensity", 3}, {"extras", {{"angle", 0}}}};
   for (const char* version : {"1.7.33", "3.3.27", "3.4.35"}) {
-    // Watts over the whole sphere of directions, and a disk of radius 1.
+    // 100 watts over the whole sphere of directions, from a disk of radius 1.
     EXPECT_NEAR(radiance(version, point), 100 / (4 * M_PI) / M_PI, 1e-12) << version;
     EXPECT_NEAR(radiance(version, sun), 3, 1e-12) << version;
   }
@@ -153,7 +154,7 @@ TEST_F(GltfReader, LampsOfRadiusZeroThrowHardShadows) {
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("1 lamps of radius 0")));
 }
 
-/// Equal angles are a hard edge: Blender's Blend 0, whose lamps fall over 0.001 of the cosines, and anybody's else.
+/// Equal angles mean a hard edge; only files from Blender, where Blend is 0, get its falloff over 0.001 of the cosine.
 TEST_F(GltfReader, SpotsWithAHardEdge) {
   const json lamp = {{"type", "spot"},
                      {"intensity", 2},
@@ -193,7 +194,7 @@ TEST_F(GltfReader, LampsThatAreNoneAreRefused) {
   EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extensions/KHR_lights_punctual/light"));
 }
 
-/// Node 0 as an area lamp of extras, half as high as wide, turned to shine down.
+/// Makes node 0 an area lamp in extras, half as high as wide, turned to shine down.
 Gltf with_area_lamp(const json& lamp) {
   Gltf gltf = with_lamp({{"type", "point"}, {"intensity", 0}, {"extras", {{"radius", 1}}}});
   gltf.at("/nodes/0")["scale"] = {2, 3, 5};
@@ -201,7 +202,7 @@ Gltf with_area_lamp(const json& lamp) {
   return gltf;
 }
 
-/// Extras hold lamps that KHR_lights_punctual has no word for.
+/// Extras hold lamps that KHR_lights_punctual cannot express.
 TEST_F(GltfReader, AreaLampsOfExtras) {
   Gltf gltf = with_area_lamp({{"shape", "rectangle"}, {"size", {1, 0.5}}, {"radiance", {4, 2, 1}}});
   const Scene scene = read(gltf);
@@ -223,7 +224,7 @@ TEST_F(GltfReader, AreaLampsOfExtras) {
   EXPECT_NEAR(std::get<Disk>(round.lights.at(0).shape).radius, 1.5, 1e-15);
   EXPECT_LT(glm::distance(std::get<Disk>(round.lights[0].shape).normal, glm::dvec3(0, -1, 0)), 1e-15);
 
-  gltf.at("/nodes/0/scale") = {-2, 3, 5};  // a mirror does not turn it
+  gltf.at("/nodes/0/scale") = {-2, 3, 5};  // a mirroring scale does not change where it shines
   EXPECT_LT(glm::distance(std::get<Disk>(read(gltf).lights.at(0).shape).normal, glm::dvec3(0, -1, 0)), 1e-15);
 }
 

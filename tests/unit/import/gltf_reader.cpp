@@ -117,12 +117,12 @@ TEST_F(GltfReader, ReadsEveryKindOfAccessor) {
                                {"values", {{"bufferView", values}}}}}};
   const std::size_t bytes = gltf.add_view(bytes_of(std::uint8_t{2}, std::uint8_t{0}, std::uint8_t{1}));
   gltf.at("/accessors/1") = {{"bufferView", bytes}, {"componentType", 5121}, {"count", 3}, {"type", "SCALAR"}};
-  EXPECT_EQ(corners(read(gltf), 0), (std::vector<glm::dvec3>{{0, -1, 0}, {0, 0, 1}, {1, 0, 0}}));  // never below −1
+  EXPECT_EQ(corners(read(gltf), 0), (std::vector<glm::dvec3>{{0, -1, 0}, {0, 0, 1}, {1, 0, 0}}));  // not below −1
 }
 
 TEST_F(GltfReader, EmissiveMeshesThatAreNotFlatAreLightsInPieces) {
   Gltf gltf;
-  gltf.at("/meshes/0/primitives/0/material") = 1;  // the triangle: a polygon light
+  gltf.at("/meshes/0/primitives/0/material") = 1;  // the triangle becomes a polygon light
   const std::size_t view = gltf.add_view(bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 1.f, 1.f, 0.1f, 0.f, 1.f, 0.f));
   gltf.at("/accessors").push_back({{"bufferView", view}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}});
   gltf.at("/meshes").push_back(
@@ -252,7 +252,7 @@ TEST_F(GltfReader, RefusesWhatDoesNotFitWithItsPlace) {
       "not finite after the transform of /nodes/0");
 }
 
-/// 3 · 6148914691236517206 is 2 modulo 2⁶⁴, 4 · 2⁶² is 0: what sparse entries then fill must be there.
+/// 3 · 6148914691236517206 is 2 modulo 2⁶⁴, and 4 · 2⁶² is 0: the entries that sparse data then replace must exist.
 TEST_F(GltfReader, CountsThatOverflowAreRefused) {
   const auto with_sparse = [](Gltf& gltf, std::size_t accessor, std::uint64_t count, const char* type) {
     const std::size_t places = gltf.add_view(bytes_of(std::uint32_t{100000})),
@@ -299,7 +299,7 @@ TEST_F(GltfReader, AMemoryBombCostsAMessage) {
   Gltf gltf;  // an accessor without a buffer view is all zeros: the file is small, the mesh is not
   gltf.at("/accessors/0") = {{"componentType", 5126}, {"count", 3000000000u}, {"type", "VEC3"}};
   const std::string message = refusal(gltf);
-#if !defined(PENUMBRA_SHADOW_MEMORY)  // ASan ends the helper before it can say so
+#if !defined(PENUMBRA_SHADOW_MEMORY)  // ASan ends the helper before it can report this
   EXPECT_THAT(message, HasSubstr("needs more than 4 GiB of memory"));
 #endif
 }
@@ -325,7 +325,7 @@ TEST_F(GltfReader, EveryTruncationAndManyFlipsAreRefusedOrRead) {
     flipped[at] = static_cast<char>(flipped[at] ^ 0x14);
     const auto path = write("flip.glb", flipped);
     try {
-      read_gltf(path);  // what it means is its own affair; it must not end in anything else than a scene or a message
+      read_gltf(path);  // the result may be any scene or message, but nothing else
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(path.string()));
       EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("crashed"))) << "byte " << at;
@@ -333,7 +333,7 @@ TEST_F(GltfReader, EveryTruncationAndManyFlipsAreRefusedOrRead) {
   }
 }
 
-/// One reader reads glTF files for scenes and for meshes: for every file of a corpus both results agree.
+/// One reader reads glTF files for scenes and for meshes: for every file of a corpus the two results agree.
 TEST(GltfCorpus, AsAMeshAndAsASceneAreOne) {
   int files = 0, read = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator("/usr/share/assimp/models")) {

@@ -70,7 +70,7 @@ TEST_F(GltfSurfaces, HavePicturesWithPlaces) {
   EXPECT_EQ(read(gltf).looks.places[2], glm::dvec2(1.25, 3.5));
   gltf.at("/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform")["rotation"] =
       std::numbers::pi / 2;
-  // (0.5, 1) scaled is (1, 3), turned by a right angle (3, -1).
+  // (0.5, 1) scaled is (1, 3); turned by a right angle it is (3, -1).
   EXPECT_LT(glm::distance(read(gltf).looks.places[2], glm::dvec2(3.25, -0.5)), 1e-12);
 }
 
@@ -92,8 +92,9 @@ TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
   EXPECT_EQ(scene.looks.normals.back(), glm::vec3(0));
 }
 
-/// A surface that stops all light is plain geometry, one that stops none is absent; others keep their alpha.
-/// Blender's exporter writes nothing of shaders that it does not know; an Emission alone reflects nothing.
+/// A surface that stops all light is plain geometry, one that stops none is left out; others keep their alpha.
+/// Blender's exporter writes nothing for shaders that it does not support; a material of Emission alone reflects
+/// nothing.
 TEST_F(GltfSurfaces, OfBlendersOtherShaders) {
   Gltf gltf;
   gltf.at("/materials/0").erase("pbrMetallicRoughness");
@@ -137,7 +138,7 @@ TEST_F(GltfSurfaces, LetLightThrough) {
   EXPECT_THAT(read(metal).warnings, ::testing::ElementsAre(HasSubstr("'Body' has a metallic material")));
 }
 
-/// The origin is the middle of all vertices of meshes, whether they are seen, and whether a triangle has them.
+/// The origin is the middle of all vertices of meshes, visible or not, in a triangle or not.
 TEST_F(GltfSurfaces, VerticesThatNobodySeesMoveTheOrigin) {
   Gltf gltf;
   const auto box_of = [](const Scene& scene) {
@@ -170,7 +171,7 @@ TEST_F(GltfSurfaces, VerticesThatNobodySeesMoveTheOrigin) {
   EXPECT_EQ(scene.origin, std::optional(open + glm::dvec3(0, 40, 0)));
 }
 
-/// The picture's own alpha: solid texels are no holes; a file that cannot be read might have some.
+/// A picture's own alpha: opaque texels are no holes; a picture that cannot be read might have some.
 TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   Gltf gltf = textured();
   gltf.at("/materials/0")["alphaMode"] = "MASK";
@@ -185,7 +186,7 @@ TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("without its picture")));
 }
 
-/// Texels are sRGB and alpha what the file has, whatever its depth and its gAMA chunk; 16 bits come rounded.
+/// Texels are sRGB, and alpha is that of the file, whatever the picture's depth and gAMA chunk; 16 bits are rounded.
 TEST_F(GltfSurfaces, PicturesOfAnyDepthAreAsTheyAre) {
   const auto texel_of = [&](const std::string& png) {
     Gltf gltf = textured();
@@ -199,7 +200,7 @@ TEST_F(GltfSurfaces, PicturesOfAnyDepthAreAsTheyAre) {
             (std::array<std::uint8_t, 4>{128, 64, 255, 7}));
 }
 
-/// Losses are named.
+/// Everything that is lost produces a message.
 TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   Gltf gltf = textured();
   gltf.at("/meshes/0/primitives/0/attributes").erase("TEXCOORD_0");
@@ -228,8 +229,8 @@ TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   EXPECT_THAT(read(pane).warnings, Contains(HasSubstr("'Body' is wholly transparent")));
 }
 
-/// A light of radiance (20, 10, 0) under a picture of dark red and white: the mean over what its mesh covers, in linear
-/// light. The lamp's corners are at (−1, 1), (1, 1), (−1, −1) and (1, −1).
+/// A light of radiance (20, 10, 0) with a picture of dark red and white has the mean over the part of the picture that
+/// its mesh covers, in linear light. The lamp's corners are at (−1, 1), (1, 1), (−1, −1) and (1, −1).
 TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   const double dark = linear_of_srgb(128 / 255.0);
   const auto lit = [](const std::vector<float>& places, const json& transform = {}) {
@@ -247,16 +248,16 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   Gltf all = lit(whole);
   EXPECT_LT(glm::distance(radiance(all), glm::dvec3(20 * (dark + 1) / 2, 10 * 0.5, 0)), 1e-12);
   EXPECT_THAT(read(all).warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("mean"))));
-  // A quarter of the width, so that the right texel is a quarter of what is covered.
+  // The mesh covers two thirds of the width: the right texel is a quarter of that.
   EXPECT_LT(glm::distance(radiance(lit({0, 1, 0.6666667f, 1, 0, 0, 0.6666667f, 0})),
                           glm::dvec3(20 * (0.75 * dark + 0.25), 10 * 0.25, 0)),
             1e-6);
-  // The right half of the picture alone: texture coordinates say so, or KHR_texture_transform does.
+  // Only the right half of the picture, by texture coordinates or by KHR_texture_transform.
   EXPECT_EQ(radiance(lit({0.5f, 1, 1, 1, 0.5f, 0, 1, 0})), glm::dvec3(20, 10, 0));
   EXPECT_EQ(radiance(lit(whole, {{"scale", {0.5, 1}}, {"offset", {0.5, 0}}})), glm::dvec3(20, 10, 0));
-  // One place for all corners, as of a palette.
+  // The same place for all corners, as with a palette.
   EXPECT_EQ(radiance(lit({0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f, 0.25f, 0.5f})), glm::dvec3(20 * dark, 0, 0));
-  // Coordinates where the picture repeats, and so far away that doubles do not resolve texels: the picture ends.
+  // Coordinates far out in a repeated picture; at 9.1e15 doubles do not even resolve texels.
   for (const double offset : {1e6, 9.1e15}) {
     Gltf far = lit(whole, {{"scale", {64, 1}}, {"offset", {offset, 0}}});
     far.at("/samplers/0/wrapS") = 10497;
@@ -272,7 +273,8 @@ TEST_F(GltfSurfaces, ShineWithTheMeanOfTheirPictureWhereItLies) {
   EXPECT_THAT(refusal(unreadable), HasSubstr("'Lamp' would shine without its emissive picture"));
 }
 
-/// A pane shines by what it covers. Where alpha differs from place to place, all of the mesh would shine.
+/// A pane shines in proportion to its alpha. If alpha varies over the mesh, it is refused, as all of the mesh would
+/// shine.
 TEST_F(GltfSurfaces, ShineAsFarAsTheyCover) {
   Gltf gltf = textured();
   gltf.at("/materials/1")["alphaMode"] = "BLEND";
@@ -284,7 +286,7 @@ TEST_F(GltfSurfaces, ShineAsFarAsTheyCover) {
   EXPECT_THAT(refusal(gltf), HasSubstr("'Lamp' is emissive and lets light through in places"));
 }
 
-/// Custom properties of an object, or of its mesh, say what glTF has no words for.
+/// Custom properties of an object, or of its mesh, hold settings that glTF cannot express.
 TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   Gltf gltf;
   gltf.at("/meshes/0")["extras"] = {{"castsShadow", 0}, {"receivesShadow", false}};
@@ -299,13 +301,13 @@ TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   EXPECT_EQ(bodiless.lights.size(), 1u);
   EXPECT_EQ(bodiless.soup.triangles.size(), 1u);
   EXPECT_EQ(bodiless.soup.positions.size(), 3u);
-  gltf.at("/nodes/1/extras/body") = "human";  // another tool's
+  gltf.at("/nodes/1/extras/body") = "human";  // a property of another tool
   const Scene foreign = read(gltf);
   EXPECT_EQ(foreign.objects.size(), 2u);
   EXPECT_THAT(foreign.warnings, Contains(AllOf(HasSubstr("'Lamp'"), HasSubstr("\"body\" of another tool"))));
 }
 
-/// Extras of cameras and spot lamps hold what glTF has no word for.
+/// Extras of cameras and spot lamps hold settings that glTF cannot express.
 TEST_F(GltfSurfaces, ExtrasShiftLensesAndSmoothCones) {
   Gltf gltf;
   gltf.at("/cameras/0")["extras"] = {{"shift", {0.25, -1}}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files below a folder, and nothing else, whatever names and links say.
+// Tests that only files below a folder are opened, whatever names and links say.
 #include "mesh/input_file.hpp"
 
 #include "scenes/formats/package_files.hpp"
@@ -100,7 +100,7 @@ TEST_F(InputFiles, TheRootHasNoOutside) {
   }
 }
 
-/// One name, now a file and then a link to the outside: what is opened is never the outside.
+/// One name is in turn a file and a link to the outside: the file that is opened is never outside.
 TEST_F(InputFiles, NobodyCanExchangeANameMeanwhile) {
   std::atomic<bool> done = false;
   std::thread flipping([&] {

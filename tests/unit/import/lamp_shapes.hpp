@@ -17,12 +17,13 @@
 
 namespace penumbra::test {
 
-/// Emitters as they are modelled: points, and triangles that run counter-clockwise seen from where they emit to.
+/// Emitters as a modeller makes them: points, and triangles that run counter-clockwise as seen from the side that
+/// emits.
 struct LampMesh {
   std::vector<glm::dvec3> points;
   std::vector<mesh::Triangle> triangles;
 
-  /// A flat polygon as a fan around its first corner.
+  /// Adds a flat polygon as a fan around its first corner.
   void add(const std::vector<glm::dvec3>& corners) {
     const auto first = static_cast<std::uint32_t>(points.size());
     points.insert(points.end(), corners.begin(), corners.end());
@@ -41,7 +42,7 @@ struct LampMesh {
   }
 };
 
-/// Faces of `side` quads a side, whose corners are not shared between faces.
+/// Makes a cube with side × side quads on each face; faces do not share corners.
 inline LampMesh cube_lamp(const glm::dvec3& center, double half, int side = 1) {
   LampMesh lamp;
   for (int axis = 0; axis < 3; ++axis) {
@@ -80,7 +81,7 @@ inline LampMesh tube_lamp(const glm::dvec3& center, double radius, double half, 
   return lamp;
 }
 
-/// Makes a star with so many points, facing down; triangles from its middle.
+/// Makes a star with the given number of points, facing down, as triangles around its middle.
 inline LampMesh star_lamp(const glm::dvec3& center, double outer, double inner, int points) {
   LampMesh lamp;
   lamp.points.push_back(center);
@@ -93,18 +94,18 @@ inline LampMesh star_lamp(const glm::dvec3& center, double outer, double inner, 
   return lamp;
 }
 
-/// Two rectangles of which one stands upright, apart from one another.
+/// Makes two separate rectangles, one facing down and one upright.
 inline LampMesh two_panels(const glm::dvec3& center) {
   LampMesh lamp;
   const glm::dvec3 a = center - glm::dvec3(1, 0, 0), b = center + glm::dvec3(1, 0, 0);
   lamp.add({a + glm::dvec3(-0.5, 0, -0.3), a + glm::dvec3(0.5, 0, -0.3), a + glm::dvec3(0.5, 0, 0.3),
-            a + glm::dvec3(-0.5, 0, 0.3)});  // down
+            a + glm::dvec3(-0.5, 0, 0.3)});  // faces down
   lamp.add({b + glm::dvec3(0, -0.4, -0.3), b + glm::dvec3(0, -0.4, 0.3), b + glm::dvec3(0, 0.4, 0.3),
-            b + glm::dvec3(0, 0.4, -0.3)});  // toward −x
+            b + glm::dvec3(0, 0.4, -0.3)});  // faces −x
   return lamp;
 }
 
-/// An icosahedron whose triangles are cut in four so many times.
+/// Makes an icosahedron whose triangles are cut in four `subdivisions` times.
 inline LampMesh ball_lamp(const glm::dvec3& center, double radius, int subdivisions) {
   const double t = std::numbers::phi;
   LampMesh lamp;

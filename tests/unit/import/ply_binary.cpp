@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Binary PLY is read many numbers at once where it is of the usual kind: the same soup, notes and messages as number by
-// number, of whole files, of files that end at any byte, and of files with any one byte changed.
+// Binary PLY of the usual kind is read many numbers at once. The soup, notes and messages must be the same as when it
+// is read number by number: for whole files, for files cut off at any byte, and for files with any one byte changed.
 #include "import/ply.hpp"
 
 #include "base/error.hpp"
@@ -20,7 +20,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// A file that is put together number by number.
+/// A file written number by number.
 class PlyText {
  public:
   PlyText(bool big_endian, const std::string& header)
@@ -44,7 +44,7 @@ class PlyText {
   bool swap_;
 };
 
-/// All that reading says, in words.
+/// Returns everything that reading gives, as text: the mesh and its notes, or the error.
 template <typename Read>
 std::string told(Read read, const std::string& content) {
   try {
@@ -90,7 +90,7 @@ std::vector<std::string> files() {
       all.push_back(out_of_range.put<std::int32_t>({0, bad, 3}).str());
     }
 
-    // A quad, a line, nothing; numbers of other kinds around them; lengths with a sign.
+    // A quad, a line and an empty face, with other properties around them; lengths are signed.
     PlyText mixed(big,
                   "element vertex 4\nproperty uchar red\nproperty double z\nproperty short s\nproperty double x\n"
                   "property double y\nelement face 4\nproperty ushort flags\nproperty list char uint vertex_index\n"
@@ -105,15 +105,14 @@ std::vector<std::string> files() {
     all.push_back(
         mixed.put<std::uint16_t>({1}).put<std::int8_t>({3}).put<std::uint32_t>({1, 3, 1}).put<float>({1}).str());
 
-    // The file has a face with more corners than are read at once, between two triangles; and faces before their
-    // vertices.
+    // A face with more corners than are read at once, between two triangles; and faces stored before their vertices.
     PlyText large(big, "element face 3\nproperty list int uint vertex_index\n" + places);
     large.put<std::int32_t>({3}).put<std::uint32_t>({0, 1, 2}).put<std::int32_t>({40});
     for (std::uint32_t i = 0; i < 40; ++i) large.put<std::uint32_t>({i % 4});
     large.put<std::int32_t>({3}).put<std::uint32_t>({1, 2, 3});
     all.push_back(vertices(large, 0.5F).str());
 
-    // Vertices in two parts with faces between, lists among the properties, coordinates of two types.
+    // Vertices in two parts with faces in between, lists among the properties, coordinates of two types.
     PlyText parts(big,
                   "element vertex 2\nproperty float x\nproperty float y\nproperty double z\n" + triangles +
                       "element vertex 2\nproperty float x\nproperty float y\nproperty float z\n"

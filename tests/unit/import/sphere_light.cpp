@@ -54,7 +54,8 @@ TEST(SphereLight, HasTheAreaOfItsMesh) {
   }
 }
 
-/// Blender's own spheres have corners from sines and cosines in single precision: up to 2e-6 of the radius off.
+/// Blender computes the corners of its spheres from sines and cosines in single precision: they are up to 2e-6 of the
+/// radius off.
 TEST(SphereLight, IsWhatSinglePrecisionMakesOfIt) {
   const Ball ball = uv_sphere(48, 24);
   import::Welded mesh = import::weld(ball.points, ball.triangles);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The half-edge view and repair on the meshes of Debian's libcgal-demo, good and bad: no face is lost without being
-// listed, OpenMesh refuses none, silhouette loops are the signed multiplicities, and repair keeps its promises. The
-// label `quick` has some small flawed ones, `full` all.
+// Tests the half-edge view and repair on the meshes of Debian's libcgal-demo, good and bad: no face is lost without
+// being listed, OpenMesh refuses none, silhouette loops are the signed multiplicities, and repair keeps its promises.
+// The label `quick` has some small flawed meshes, `full` all.
 
 #include "mesh/half_edge_view.hpp"
 #include "mesh/import.hpp"
@@ -68,7 +68,7 @@ void check_half_edges(const TriangleSoup& soup) {
   EXPECT_EQ(wrong, 0u);
 }
 
-/// No directed edge twice by indices; the number of open ones.
+/// Expects that by indices no directed edge occurs twice. Returns the number of open edges.
 std::size_t open_edges(const TriangleSoup& soup) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> directed;
   for (const Triangle& t : soup.triangles) {
@@ -101,7 +101,7 @@ void check_repair(const TriangleSoup& soup, const std::string& name, Total& tota
   for (const RepairStep& step : repaired.done) text += "\n    " + step.what;
   for (const std::string& what : repaired.left) text += "\n    left: " + what;
   if (!text.empty()) fmt::print("{}: {} triangles, {:.2f} s{}\n", name, soup.triangles.size(), seconds, text);
-  if (!repaired.done.empty()) {  // what had nothing to repair stays as it is, however its indices are
+  if (!repaired.done.empty()) {  // a mesh without anything to repair stays as it is, whatever its indices
     const std::size_t open = open_edges(repaired.soup);
     EXPECT_EQ(open > 0, text.find("edges are open") != std::string::npos) << open << text;
   }

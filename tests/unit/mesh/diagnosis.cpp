@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes small enough to count their defects by hand: edges, vertices, windings, components.
+// Tests diagnoses of meshes small enough to count their defects by hand: edges, vertices, windings, components.
 
 #include "mesh/diagnosis/diagnosis.hpp"
 
@@ -37,7 +37,7 @@ TEST(Diagnosis, Box) {
   EXPECT_EQ(d.upper, glm::dvec3(1));
   EXPECT_EQ(d.largest_coordinate, 1);
   EXPECT_EQ(d.shortest_edge, 1);
-  EXPECT_EQ(d.float_spacing, 0x1p-24);  // of floats from 0.5 to 1
+  EXPECT_EQ(d.float_spacing, 0x1p-24);  // spacing of floats from 0.5 to 1
   EXPECT_EQ(d.vertices_lost + d.triangles_lost, 0);
 }
 
@@ -107,9 +107,9 @@ TEST(Diagnosis, DoubledSheetIsNotClosed) {
   EXPECT_EQ(same.duplicate_faces.count, 8);
   EXPECT_EQ(same.opposite_faces.count, 0);
   EXPECT_EQ(same.boundary_edges.count, 0);
-  EXPECT_EQ(same.non_manifold_edges.count, 8);     // inside
-  EXPECT_EQ(same.inconsistent_windings.count, 8);  // along the rim
-  // Each of the 8 with its own copy; with the others' copies it shares an edge or a vertex, and no more.
+  EXPECT_EQ(same.non_manifold_edges.count, 8);     // edges inside the sheet
+  EXPECT_EQ(same.inconsistent_windings.count, 8);  // edges along the rim
+  // Each of the 8 triangles intersects its own copy; with the other copies it shares only an edge or a vertex.
   EXPECT_EQ(same.self_intersections->count, 8);
 
   for (std::size_t i = 8; i < 16; ++i) std::swap(sheet.triangles[i][1], sheet.triangles[i][2]);
@@ -126,7 +126,7 @@ TEST(Diagnosis, ThreeOfOneWindingAndTwoOfTheOther) {
       diagnosis_of(soup({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}}));
   EXPECT_EQ(d.duplicate_faces.count, 3);
   EXPECT_EQ(d.opposite_faces.count, 2);
-  EXPECT_EQ(d.self_intersections->count, 10);  // every pair
+  EXPECT_EQ(d.self_intersections->count, 10);  // every pair of triangles
   EXPECT_EQ(d.components, 1);
 }
 
@@ -140,7 +140,7 @@ TEST(Diagnosis, MoebiusStrip) {
       strip.positions.emplace_back(r * std::cos(angle), side * std::sin(angle / 2), r * std::sin(angle));
     }
     const std::uint32_t a = 2 * i, b = 2 * i + 1;
-    const bool last = i + 1 == kCells;  // where the two sides change places
+    const bool last = i + 1 == kCells;  // the two sides of the strip change places here
     const std::uint32_t c = last ? 1 : a + 2, d = last ? 0 : a + 3;
     strip.triangles.push_back({a, b, c});
     strip.triangles.push_back({c, b, d});
@@ -155,7 +155,8 @@ TEST(Diagnosis, MoebiusStrip) {
 }
 
 TEST(Diagnosis, ProjectivePlaneHasNoBoundaryYetIsNotClosed) {
-  // Six vertices, and two triangles at each edge, but no winding makes them agree. In space it must cross itself.
+  // Six vertices, and two triangles at each edge, but no winding on which all of them agree. In space it must cross
+  // itself.
   const std::vector<glm::dvec3> p = {{0, 0, 8}, {1, 5, 2}, {5, 1, 3}, {4, -4, 1}, {-3, -5, 4}, {-6, 2, 0}};
   const Diagnosis d = diagnosis_of(soup(
       p,
@@ -173,7 +174,7 @@ TEST(Diagnosis, Bowtie) {
   EXPECT_THAT(d.non_manifold_vertices.first[0].points, ElementsAre(glm::dvec3(0)));
   EXPECT_THAT(d.non_manifold_vertices.first[0].triangles, ElementsAre(0, 1));
   EXPECT_EQ(d.components, 2);
-  EXPECT_EQ(d.boundary_loops, 2);  // they only touch
+  EXPECT_EQ(d.boundary_loops, 2);  // the triangles only touch
   EXPECT_EQ(d.self_intersections->count, 0);
 }
 
@@ -182,7 +183,7 @@ TEST(Diagnosis, ThreePages) {
       diagnosis_of(soup({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}));
   EXPECT_EQ(d.non_manifold_edges.count, 1);
   EXPECT_THAT(d.non_manifold_edges.first[0].triangles, ElementsAre(0, 1, 2));
-  EXPECT_EQ(d.non_manifold_vertices.count, 0);  // one fan: linked through the common edge
+  EXPECT_EQ(d.non_manifold_vertices.count, 0);  // the triangles are one fan, linked through the common edge
   EXPECT_EQ(d.boundary_edges.count, 6);
   EXPECT_EQ(d.boundary_loops, 1);
   EXPECT_EQ(d.self_intersections->count, 0);
@@ -190,7 +191,7 @@ TEST(Diagnosis, ThreePages) {
 
 TEST(Diagnosis, FinOnABox) {
   TriangleSoup box = unit_box();
-  append(box, soup({{0, 1, 0}, {1, 1, 0}, {0.5, 2, 0}}, {{0, 1, 2}}));  // stands on a vertical edge of the top
+  append(box, soup({{0, 1, 0}, {1, 1, 0}, {0.5, 2, 0}}, {{0, 1, 2}}));  // the fin stands on an edge of the top
   const Diagnosis d = diagnosis_of(box);
   EXPECT_EQ(d.non_manifold_edges.count, 1);
   EXPECT_EQ(d.boundary_edges.count, 2);
@@ -207,7 +208,8 @@ TEST(Diagnosis, TwoBoxesThatShareAnEdge) {
   EXPECT_EQ(d.vertices, 14);
   EXPECT_EQ(d.components, 1);
   EXPECT_EQ(d.non_manifold_edges.count, 1);
-  EXPECT_EQ(d.non_manifold_vertices.count, 0);  // one fan at each end of the edge: its four triangles are linked
+  EXPECT_EQ(d.non_manifold_vertices.count,
+            0);  // one fan at each end of the common edge, whose four triangles are linked
   EXPECT_TRUE(d.closed && d.closed_as_wound);
   EXPECT_EQ(all_defects(d), 1);
   EXPECT_EQ(d.volume, 2);

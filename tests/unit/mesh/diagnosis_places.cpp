@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes small enough to count by hand what depends on where their corners are: T-junctions, coincident patches, areas,
-// intersections, lost precision.
+// Tests diagnoses of meshes small enough to count by hand that depend on positions: T-junctions, coincident patches,
+// areas, intersections, lost precision.
 
 #include "mesh/diagnosis/diagnosis.hpp"
 
@@ -18,8 +18,8 @@ namespace {
 
 using testing::ElementsAre;
 
-/// A tetrahedron over (0,0,0), (4,0,0), (0,4,0) whose base is cut in two at `cut` on the edge of y = 0; its side is
-/// not.
+/// Returns a tetrahedron over (0,0,0), (4,0,0), (0,4,0) whose base is cut in two at `cut`, on the edge y = 0, while the
+/// adjacent side is not.
 TriangleSoup cut_tetrahedron(const glm::dvec3& cut) {
   return soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}, cut},
               {{0, 2, 4}, {4, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
@@ -51,12 +51,12 @@ TEST(Diagnosis, ACollinearTriangleBridgesATJunction) {
   EXPECT_TRUE(d.closed && d.closed_as_wound);
   EXPECT_EQ(d.boundary_edges.count, 0);
   EXPECT_EQ(d.zero_area_triangles.count, 1);
-  EXPECT_EQ(d.t_junctions.count, 1);  // the edge is still there
+  EXPECT_EQ(d.t_junctions.count, 1);  // the triangle that fills the gap leaves the long edge as it was
   EXPECT_EQ(d.components, 1);
 }
 
 TEST(Diagnosis, PatchesThatOnlyCoincideInSpaceCloseOneAnother) {
-  // Six sides of a box, each a grid of its own fineness: boundaries meet in T-junctions or not at all.
+  // Six sides of a box, each a grid with its own number of cells: boundaries meet in T-junctions or not at all.
   const auto side = [](const glm::dvec3& centre, const glm::dvec3& u, const glm::dvec3& v, std::uint32_t cells) {
     return make_grid({.center = centre, .half_u = u, .half_v = v, .cells_u = cells, .cells_v = cells});
   };
@@ -71,7 +71,8 @@ TEST(Diagnosis, PatchesThatOnlyCoincideInSpaceCloseOneAnother) {
   EXPECT_TRUE(d.closed && d.closed_as_wound);
   EXPECT_GT(d.t_junctions.count, 0);
   EXPECT_NEAR(d.volume, 120.0 * 120 * 120, 1e-6);
-  std::swap(box.triangles[4][0], box.triangles[4][1]);  // turned back: now most of its patch is wound the other way
+  std::swap(box.triangles[4][0],
+            box.triangles[4][1]);  // one triangle turned back: now most of its patch is wound the other way
   EXPECT_TRUE(diagnosis_of(box).closed);
   EXPECT_FALSE(diagnosis_of(box).closed_as_wound);
 }
@@ -83,9 +84,9 @@ TEST(Diagnosis, ZeroAreaAndNeedles) {
   EXPECT_EQ(d.needles.count, 1);  // altitude 0.0029 on an edge of 3
   EXPECT_THAT(d.needles.first[0].triangles, ElementsAre(1));
   EXPECT_EQ(d.vertices, 5);
-  EXPECT_EQ(d.components, 1);  // the three that have edges share the one from 0 to 2
+  EXPECT_EQ(d.components, 1);  // the three triangles that have edges share the edge from 0 to 2
   EXPECT_EQ(d.t_junctions.count, 1);
-  EXPECT_EQ(d.shortest_edge, 1);  // from 0 to 1: what repeats a vertex has no edges
+  EXPECT_EQ(d.shortest_edge, 1);  // from 0 to 1: a triangle that repeats a vertex has no edges
 }
 
 TEST(Diagnosis, SelfIntersections) {
@@ -95,26 +96,27 @@ TEST(Diagnosis, SelfIntersections) {
   EXPECT_EQ(diagnosis_of(crossing).self_intersections->first[0].points.size(), 6);
   EXPECT_FALSE(diagnosis_of(crossing, {.search_intersections = false}).self_intersections.has_value());
 
-  // Neighbours that fold onto one another, and neighbours that only lie in one plane.
+  // Neighbours that fold onto one another intersect; neighbours that only lie in one plane do not.
   EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 3, 0}}, {{0, 1, 2}, {0, 1, 3}}))
                 .self_intersections->count,
             1);
   EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, -3, 0}}, {{0, 1, 2}, {0, 1, 3}}))
                 .self_intersections->count,
             0);
-  // A vertex that touches the inside of another triangle or edge also counts as a meeting elsewhere.
+  // A vertex that touches the inside of another triangle or edge also counts as an intersection.
   EXPECT_EQ(
       diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 0}, {1, 1, 1}, {2, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}))
           .self_intersections->count,
       1);
-  // An edge from the common vertex through the other triangle's inside.
+  // An edge from the common vertex runs through the other triangle's inside.
   EXPECT_EQ(diagnosis_of(soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {2, 2, -1}, {2, 2, 1}}, {{0, 1, 2}, {0, 3, 4}}))
                 .self_intersections->count,
             1);
 }
 
 TEST(Diagnosis, ManyTrianglesInOnePlaceAreCountedAsOneSurface) {
-  // n times one triangle and m times one that crosses it, alternating: 60,000 triangles have too many pairs to visit.
+  // n copies of one triangle and m copies of one that crosses it, alternating: 60,000 triangles have too many pairs to
+  // visit.
   const std::uint64_t n = 40'000, m = 20'000;
   TriangleSoup heap = soup({{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {9, 9, 0}}, {});
   for (std::uint64_t i = 0; i < n; ++i) {
@@ -141,8 +143,8 @@ TEST(Diagnosis, FarFromTheOriginAndTinyDetailsAreLostInFloat) {
   append(two, make_box({0x1p24, 0, 0}, {0.125, 0x1p22, 0x1p22}));
   const Diagnosis flat = diagnosis_of(two);
   EXPECT_EQ(flat.float_spacing, 2);
-  EXPECT_EQ(flat.vertices_lost, 8);    // of each pair across the thickness one
-  EXPECT_EQ(flat.triangles_lost, 16);  // all but the two large sides of each
+  EXPECT_EQ(flat.vertices_lost, 8);    // one vertex of each pair across the thickness
+  EXPECT_EQ(flat.triangles_lost, 16);  // all but the two large sides of each box
 }
 
 TEST(Diagnosis, WeldClosesACrack) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The edge graph against a few lines with std::map, on soups drawn from a tiny lattice: doubled, degenerate and
-// non-manifold are the normal case.
+// Tests the edge graph against a few lines with std::map, on soups drawn from a tiny lattice, where doubled, degenerate
+// and non-manifold triangles are the normal case.
 
 #include "mesh/edge_graph.hpp"
 #include "mesh/shapes/shapes.hpp"
@@ -16,7 +16,7 @@
 namespace penumbra::mesh {
 namespace {
 
-/// The graph as its definition says, in quadratic time.
+/// Returns the graph by its definition, in quadratic time.
 EdgeGraph brute_force(const MeshView& mesh, double weld) {
   EdgeGraph graph;
   const std::size_t n = mesh.positions.size();
@@ -119,7 +119,8 @@ TEST_P(EdgeGraphOfLatticeSoup, IsItsDefinition) {
 
 TEST_P(EdgeGraphOfLatticeSoup, WeldJoinsChainsWithinTheTolerance) {
   std::size_t joined = 0, kept = 0;
-  for (const double weld : {0.25, 0.36, 0.5}) {  // along an axis; also across a face (√2/4 = 0.354…); two steps
+  for (const double weld :
+       {0.25, 0.36, 0.5}) {  // along an axis; also a face's diagonal (√2/4 = 0.354…); two steps along an axis
     const Soup soup = lattice_soup(GetParam() + 500, 300, 0.25);
     const EdgeGraph graph = build_edge_graph(soup.view(), weld);
     ASSERT_NO_FATAL_FAILURE(expect_same(graph, brute_force(soup.view(), weld))) << "weld " << weld;
@@ -145,11 +146,11 @@ TEST(EdgeGraph, DoesNotDependOnTheNumberOfThreads) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   expect_same(build_edge_graph(soup.view()), many);
   expect_same(build_edge_graph(soup.view(), 0.01), welded);
-  expect_same(many, welded);  // nothing but equal coordinates is that close
+  expect_same(many, welded);  // only equal coordinates are that close
 }
 
 TEST(EdgeGraph, DoesNotDependOnHowVerticesAreRepeated) {
-  // Every corner a position of its own: the same edges between the same places, the same triangles around them.
+  // If every corner has a separate position, the edges between places and the triangles around them are the same.
   const TriangleSoup blob = make_blob({.subdivisions = 3});
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;

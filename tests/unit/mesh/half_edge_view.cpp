@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The half-edge view on shapes with known answers, and on random lattice soups against the definitions: held and listed
-// faces are all faces, and the silhouette loops are exactly the signed multiplicities of the held faces, ties included.
+// Tests the half-edge view on shapes with known answers, and on random lattice soups against the definitions: held and
+// listed faces are all faces, and the silhouette loops are exactly the signed multiplicities of the held faces, ties
+// included.
 
 #include "mesh/half_edge_view.hpp"
 
@@ -27,7 +28,7 @@ std::size_t count(const HalfEdgeView& surface, NotHeld why) {
   return static_cast<std::size_t>(std::ranges::count(surface.listed(), why, &ListedFace::why));
 }
 
-/// Returns the number of times that the loops run along each edge: from a to b, minus from b to a.
+/// Returns how often the loops run along each edge: from a to b, minus from b to a.
 std::map<std::uint32_t, int> runs(const HalfEdgeView& surface, const EdgeGraph& graph,
                                   const std::vector<SurfaceLoop>& loops) {
   std::map<std::uint32_t, int> runs;
@@ -43,7 +44,8 @@ std::map<std::uint32_t, int> runs(const HalfEdgeView& surface, const EdgeGraph& 
   return runs;
 }
 
-/// Every triangle is held or listed; the maps are each other's inverse; neighbours are wound alike.
+/// Expects that every triangle is held or listed, that the maps are each other's inverse, and that neighbours are wound
+/// alike.
 void expect_sound(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEdgeView& surface) {
   std::set<std::uint32_t> triangles(surface.triangle_of_face().begin(), surface.triangle_of_face().end());
   for (const ListedFace& face : surface.listed()) EXPECT_TRUE(triangles.insert(face.triangle).second);
@@ -69,7 +71,8 @@ void expect_sound(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEd
   EXPECT_EQ(faces, surface.triangle_of_face().size());
 }
 
-/// k_e(p) over the held faces is what the front loops run along each edge, minus what the back loops run.
+/// Expects that k_e(p) over the held faces is the number of times that the front loops run along edge e, minus that of
+/// the back loops.
 void expect_loops_are_multiplicities(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEdgeView& surface,
                                      const glm::dvec3& p) {
   std::vector<Side> sides = facings(view(soup), graph, p);
@@ -81,7 +84,7 @@ void expect_loops_are_multiplicities(const TriangleSoup& soup, const EdgeGraph& 
   }
 }
 
-/// The rims of holes and sheets: the loops around all faces.
+/// Returns the rims of holes and sheets: the loops around all faces.
 std::vector<SurfaceLoop> boundary_loops(const HalfEdgeView& surface) {
   return surface.loops_around(std::vector<bool>(surface.triangle_of_face().size(), true));
 }
@@ -191,13 +194,14 @@ TEST(HalfEdgeView, LatticeSoupsKeepEveryFaceAndEveryMultiplicityInSilence) {
     const HalfEdgeView surface(view(soup), graph);
     expect_sound(soup, graph, surface);
     EXPECT_EQ(count(surface, NotHeld::refused), 0u);
-    expect_loops_are_multiplicities(soup, graph, surface, {1, 0, 2});  // ties are the rule
+    expect_loops_are_multiplicities(soup, graph, surface,
+                                    {1, 0, 2});  // a viewpoint on the lattice, in the planes of many triangles
     expect_loops_are_multiplicities(soup, graph, surface, {0.3, 5.1, -2.7});
     held += surface.triangle_of_face().size();
     listed += surface.listed().size();
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  EXPECT_GT(held, 500u);  // or the test would test nothing
+  EXPECT_GT(held, 500u);  // otherwise the test would test nothing
   EXPECT_GT(listed, 500u);
 }
 

@@ -20,7 +20,8 @@ using ::testing::HasSubstr;
 
 using FileCorners = std::array<std::array<double, 3>, 3>;
 
-/// The triangles as sets of corner coordinates, each starting at its least corner: what must not depend on the format.
+/// Returns the triangles as corner coordinates, each starting at its smallest corner: they must not depend on the
+/// format.
 std::multiset<FileCorners> triangles_of(const TriangleSoup& soup) {
   std::multiset<FileCorners> all;
   for (const Triangle& t : soup.triangles) {
@@ -41,7 +42,7 @@ const std::multiset<FileCorners> kTetrahedron = [] {
   const std::array<double, 3> o{0, 0, 0}, x{2, 0, 0}, y{0, 3, 0}, z{0, 0, 5};
   return std::multiset<FileCorners>{{o, y, x}, {o, x, z}, {o, z, y}, {z, x, y}};
 }();
-// Triangles in the multiset's own form start at their least corner; z x y does: (0 0 5) is the least of the three.
+// Triangles in this form start at their smallest corner; so does {z, x, y}, as (0 0 5) is the smallest of the three.
 
 class MeshImport : public penumbra::test::FileTest {
  protected:
@@ -54,7 +55,7 @@ class MeshImport : public penumbra::test::FileTest {
   }
 };
 
-/// PLY with doubles, an unused property before and after, and a list of unusual types; big-endian if Swap.
+/// PLY with doubles, an unused property before and one after, and a list of unusual types; big-endian if Swap.
 template <bool Swap>
 std::string binary_ply() {
   std::string ply = std::string("ply\nformat binary_") + (Swap ? "big" : "little") +
@@ -128,7 +129,7 @@ TEST_F(MeshImport, DropsNothing) {
       import_mesh(write("odd.obj",
                         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n"
                         "f 1 2 3\nf 1 2 3\nf 3 2 1\nf 1 1 2\nf 1 2 2\nf 1//1 2//1 3//1 4//1\nl 1 2\np 3\n"));
-  // Two alike, one turned over, two without area, and a square: 5 + 2.
+  // Two equal triangles, one turned over, two without area, and a square: 5 + 2.
   EXPECT_EQ(mesh.soup.triangles.size(), 7u);
   EXPECT_THAT(mesh.notes, Contains(HasSubstr("1 polygons became 2 triangles (1 convex")));
   EXPECT_THAT(mesh.notes, Contains(HasSubstr("2 triangles with two equal corners kept")));
@@ -138,7 +139,7 @@ TEST_F(MeshImport, DropsNothing) {
 }
 
 TEST_F(MeshImport, CutsConcaveAndLargePolygons) {
-  // An L of area 3 whose fan from corner 0 would leave it, and a regular dodecagon (Assimp's own OFF reader drops it).
+  // An L of area 3, which a fan from corner 0 would leave, and a regular dodecagon (Assimp's own OFF reader drops it).
   std::string off = "OFF\n18 2 0\n0 2 0\n0 0 0\n2 0 0\n2 1 0\n1 1 0\n1 2 0\n";
   for (int i = 0; i < 12; ++i) off += fmt::format("{} {} 1\n", std::cos(i * M_PI / 6), std::sin(i * M_PI / 6));
   off += "6 0 1 2 3 4 5\n12 6 7 8 9 10 11 12 13 14 15 16 17\n";
@@ -158,7 +159,8 @@ TEST_F(MeshImport, CutsConcaveAndLargePolygons) {
 }
 
 TEST_F(MeshImport, AppliesNodeTransformsInDouble) {
-  // One triangle under two nodes: a translation of 2^24 + 1 (no float) and a mirror, which turns the winding back.
+  // One triangle under two nodes: a translation by 2^24 + 1 (not a float) and a mirroring, for which the winding is
+  // turned back.
   const std::string gltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
     "nodes":[{"translation":[16777217,0,0],"children":[1]},{"scale":[-1,1,1],"mesh":0}],
     "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -265,7 +267,7 @@ TEST_F(MeshImport, EveryTruncationLoadsOrIsRefused) {
       }
     }
   }
-  EXPECT_EQ(loaded, 0u);  // both say how much they hold
+  EXPECT_EQ(loaded, 0u);  // both formats state the number of their elements
 }
 
 }  // namespace

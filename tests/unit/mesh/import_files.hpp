@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>  // and mkdtemp
+#include <cstdlib>  // also declares mkdtemp
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
@@ -16,7 +16,7 @@
 
 namespace penumbra::test {
 
-/// The message of the InputError that `call` throws; "" with a failure if it throws none.
+/// Returns the message of the InputError that `call` throws; "" and a test failure if it throws none.
 template <typename Call>
 std::string input_error(Call call) {
   try {
@@ -30,7 +30,7 @@ std::string input_error(Call call) {
   return "";
 }
 
-/// A test with a folder of its own, which goes with it.
+/// A test that has its own folder, deleted afterwards.
 class FileTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -45,7 +45,7 @@ class FileTest : public ::testing::Test {
     std::ofstream(path, std::ios::binary).write(content.data(), static_cast<std::streamsize>(content.size()));
     return path;
   }
-  /// A mesh file of this content is refused with a message that has its path and these words.
+  /// Expects that a mesh file of this content is refused with a message that has its path and these words.
   void expect_refused(const std::string& name, std::string_view content,
                       std::initializer_list<std::string> words) const {
     SCOPED_TRACE(name);
@@ -57,12 +57,12 @@ class FileTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-/// The position of a corner of the soup's triangle.
+/// Returns the position of a corner of one of the soup's triangles.
 inline glm::dvec3 corner(const mesh::TriangleSoup& soup, std::size_t triangle, std::size_t i) {
   return soup.positions[soup.triangles[triangle][i]];
 }
 
-/// Little-endian bytes of numbers, one after the other; Swap turns them big-endian.
+/// Returns the little-endian bytes of numbers, one after the other; big-endian with Swap.
 template <bool Swap = false, typename... Numbers>
 std::string bytes_of(Numbers... numbers) {
   std::string all;

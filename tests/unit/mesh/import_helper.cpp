@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what the program does when the import helper fails: crashes, hangs, floods, lies. The helpers here are shell
-// scripts that do so on purpose.
+// Tests what the program does when the import helper crashes, hangs, floods its streams or lies. The helpers here are
+// shell scripts that do so on purpose.
 #include "mesh/import_helper.hpp"
 
 #include "tests/unit/mesh/import_files.hpp"
@@ -69,7 +69,8 @@ TEST_F(ImportHelper, FloodIsCutOff) {
   limits.output_bytes = 1 << 20;
   use_helper("exec yes");
   EXPECT_THAT(refusal(limits), HasSubstr("more than 1 MiB"));
-  use_helper("yes | head -c 100000000 >&2; exit 9");  // much on stderr is no reason, but is not kept either
+  use_helper("yes | head -c 100000000 >&2; exit 9");  // much output on stderr is no reason for an error, but is not
+                                                      // kept either
   EXPECT_LT(refusal(limits).size(), 8000u);
 }
 
@@ -82,15 +83,16 @@ TEST_F(ImportHelper, LiesAreFoundOut) {
   EXPECT_THAT(refusal(), HasSubstr("status is unknown"));
   use_helper(R"(printf 'PNBRIMP1\002')");
   EXPECT_THAT(refusal(), HasSubstr("needs more than 4 GiB of memory"));
-  use_helper(R"(printf 'PNBRIMP1\000\377\377\377\377\377\377\377\177')");  // 2^63 files that were opened
+  use_helper(R"(printf 'PNBRIMP1\000\377\377\377\377\377\377\377\177')");  // claims that 2^63 files were opened
   EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
-  // No file, and 2^63 positions in double precision, and in single.
+  // Claims no files, and 2^63 positions, in double and in single precision.
   for (const char* precision : {"000", "001"}) {
     use_helper(std::string(R"(printf 'PNBRIMP1\000\000\000\000\000\000\000\000\000\)") + precision +
                R"(\377\377\377\377\377\377\377\177')");
     EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
   }
-  use_helper(R"(printf 'PNBRIMP1\001\004\000\000\000\000\000\000\000a\033[m')");  // steers the terminal
+  use_helper(R"(printf 'PNBRIMP1\001\004\000\000\000\000\000\000\000a\033[m')");  // contains an escape sequence that
+                                                                                  // would control the terminal
   EXPECT_EQ(refusal(), "a\\x1b[m");
 }
 
@@ -117,7 +119,7 @@ TEST_F(ImportHelper, AnswersAreChecked) {
   bad = mesh;
   bad.soup.object.clear();
   EXPECT_THROW(read_back(bad), WireError);
-  // Runs of numbers that are more or fewer than the triangles, or wrap around.
+  // Runs of numbers that are more or fewer than the triangles, or whose sum wraps around.
   for (const std::uint32_t count : {0U, 1U, 2U, 0xffffffffU}) {
     WireWriter to;
     to.put<std::uint8_t>(0), to.put_array(std::span<const glm::dvec3>(mesh.soup.positions));
@@ -139,10 +141,11 @@ TEST_F(ImportHelper, SoupsArriveAsTheyWereSent) {
   for (int kind = 0; kind < 8; ++kind) {
     TriangleSoup soup;
     for (std::uint32_t i = 0; i < 3000; ++i) {
-      soup.positions.emplace_back(i, -0.0, (kind & 1) != 0 && i == 2999 ? 0.1 : 0.5);  // 0.1 is no single precision
+      soup.positions.emplace_back(i, -0.0,
+                                  (kind & 1) != 0 && i == 2999 ? 0.1 : 0.5);  // 0.1 is not exact in single precision
       soup.triangles.push_back({i, (i * 7) % 3000, 2999 - i});
       soup.object.push_back((kind & 2) != 0 ? i * 2654435761U : i / 1000);
-      soup.source_face.push_back((kind & 4) != 0 ? i / 2 : i < 10 ? i : 0xfffffff0U + i);  // counts over 2^32
+      soup.source_face.push_back((kind & 4) != 0 ? i / 2 : i < 10 ? i : 0xfffffff0U + i);  // counts past 2^32
     }
     WireWriter to;
     put_soup(to, soup);
@@ -180,7 +183,7 @@ TEST_F(ImportHelper, LeaksNoDescriptors) {
 }
 
 TEST_F(ImportHelper, WorksWithoutStandardStreams) {
-  // A daemon's standard streams may be closed, so that the pipes get the numbers 0 to 2.
+  // A daemon's standard streams may be closed; then the pipes get the numbers 0 to 2.
   const auto good = write("good.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   EXPECT_EXIT(
       {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests files that Assimp reads wrongly, or not at all, and our own readers read.
+// Tests files that Assimp reads wrongly or not at all, and that our own readers read.
 #include "mesh/import.hpp"
 
 #include "tests/unit/mesh/import_files.hpp"
@@ -37,7 +37,7 @@ TEST_F(MeshReaders, ObjFacesWithTextureCoordinatesThatDoNotExistAreWhole) {
     EXPECT_THAT(mesh.notes, Contains("2 lines skipped: faces with two corners"));
     EXPECT_THAT(mesh.notes, Contains("1 points skipped: faces with one corner"));
   }
-  // Lines do not make up for faces that are missing.
+  // Lines do not count in place of missing faces.
   const ImportedMesh mesh = read("lines.obj", square + "vt 0 0\nf 1/1 2/1 3/2\nf 1/1 3/1 4/1\nl 1 2 3 4 1\n");
   EXPECT_EQ(mesh.soup.triangles.size(), 2u);
 }
@@ -163,7 +163,7 @@ TEST_F(MeshReaders, PlyListsThatPromiseMoreThanThereIs) {
 }
 
 TEST_F(MeshReaders, PlyWithWhatIsNotOurs) {
-  // Lists before and between, faces before vertices, a column too many, an element of another kind.
+  // Lists before and between, faces before vertices, an extra column, an element of another kind.
   const ImportedMesh mesh =
       read("odd.ply",
            "ply\nformat ascii 1.0\ncomment faces first\nelement face 2\nproperty list uchar float weights\n"
@@ -192,7 +192,8 @@ TEST_F(MeshReaders, PlyStripsHaveOneWinding) {
 }
 
 TEST_F(MeshReaders, PlyLinesThatEndInReturnsAlone) {
-  // The first byte of the body is a line feed, which must not be taken for a part of the header's last line end.
+  // The first byte of the body is a line feed, which must not be taken for part of the line end of the header's last
+  // line.
   const std::string body = bytes_of(std::uint8_t{10}, std::uint8_t{10}) +
                            bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, std::uint8_t{3}, 0, 1, 2);
   for (const std::string end : {"\n", "\r\n", "\r"}) {
@@ -290,7 +291,7 @@ TEST_F(MeshReaders, ThreeDsChunksThatPromiseMoreThanThereIs) {
   expect_refused("length.3ds", file(3, 4000000000u), {"chunk 0x4110 at byte 26", "says that it has 4000000044 bytes"});
 }
 
-/// A lamp of 3D Studio is an object with a position, and a chunk more if it is a spot.
+/// A 3D Studio lamp is an object with a position, and with another chunk if it is a spot.
 TEST_F(MeshReaders, ThreeDsLampsAreNamed) {
   const std::string positions = bytes_of(std::uint16_t{3}, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
   const std::string faces =
@@ -307,7 +308,7 @@ TEST_F(MeshReaders, ThreeDsLampsAreNamed) {
   EXPECT_THAT(read("unlit.3ds", file(shape)).notes, testing::Not(testing::Contains(HasSubstr("lamps"))));
 }
 
-/// Opacity of 3D Studio is a percentage of transparency.
+/// 3D Studio stores opacity as a percentage of transparency.
 TEST_F(MeshReaders, ThreeDsMaterialsThatLetLightThroughAreNamed) {
   const auto file = [](std::uint16_t percent, bool used) {
     const std::string name("glass\0", 6);

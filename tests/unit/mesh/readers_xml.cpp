@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats of XML, zipped or plain: AMF and 3MF.
+// Tests XML formats, zipped or plain: AMF, 3MF and X3D.
 #include "mesh/import.hpp"
 
 #include "tests/unit/mesh/import_files.hpp"
@@ -70,8 +70,9 @@ TEST_F(XmlReaders, AmfConstellationsTurnAndMove) {
            "<amf>" + amf_object("a", 1) + amf_object("alone", 1) +
                "<constellation id=\"c\"><instance objectid=\"a\"><deltax>10</deltax><rx>90</rx><rz>90</rz>"
                "</instance><instance objectid=\"a\"/></constellation></amf>");
-  ASSERT_EQ(mesh.soup.triangles.size(), 3u);  // what nobody places is where it is, then both copies
-  // (0 1 0): around x by 90° it is (0 0 1), around z still; then moved.
+  ASSERT_EQ(mesh.soup.triangles.size(),
+            3u);  // the object that no constellation places stays where it is; then both copies
+  // (0 1 0): turned around x by 90° it is (0 0 1), and turning around z keeps that; then it is moved.
   EXPECT_LT(distance(corner(mesh.soup, 1, 2), {10, 0, 1}), 1e-15);
   EXPECT_LT(distance(corner(mesh.soup, 1, 1), {10, 1, 0}), 1e-15);
   EXPECT_EQ(corner(mesh.soup, 2, 2), glm::dvec3(0, 1, 0));
@@ -128,7 +129,7 @@ TEST_F(XmlReaders, ThreeMfComponentsInSeveralModels) {
                                                                 {"3D/start.model", start},
                                                                 {"3D/other.model", model(object("1"), "")}}));
   ASSERT_EQ(mesh.soup.triangles.size(), 4u);
-  // (1 0 0) by the rows of the transform: (0 1 0) + (5 6 7), then twice that.
+  // (1 0 0) times the rows of the transform: (0 1 0) + (5 6 7), then doubled.
   EXPECT_EQ(corner(mesh.soup, 1, 1), glm::dvec3(10, 14, 14));
   EXPECT_EQ(corner(mesh.soup, 3, 1), glm::dvec3(0, 1, 0)) << "mirrored, so wound the other way";
   EXPECT_THAT(mesh.notes, Contains(HasSubstr("1 objects mirrored")));
@@ -158,7 +159,8 @@ TEST_F(XmlReaders, ThreeMfRefusals) {
               HasSubstr("<build> lists no <item>, so that none of its 2"));
   expect_refused("plain.3mf", "<model/>", {"no zip archive"});
   expect_refused("cut.3mf", "PK\x03\x04 and no more", {"truncated or damaged"});
-  // Doubling forty times would be a thousand billion triangles: an end, and a message that says what is too much.
+  // Doubling forty times would give a thousand billion triangles: the import must end with a message that says what is
+  // too much.
   std::string doubled = object("0");
   for (int i = 1; i <= 40; ++i) {
     doubled += fmt::format(
@@ -166,7 +168,7 @@ TEST_F(XmlReaders, ThreeMfRefusals) {
         "objectid=\"{1}\"/></components></object>",
         i, i - 1);
   }
-#if !defined(PENUMBRA_SHADOW_MEMORY)  // under a sanitizer the helper has no limit of memory
+#if !defined(PENUMBRA_SHADOW_MEMORY)  // under a sanitizer the helper's memory is not limited
   const auto bomb = write_zip("bomb.3mf", {{"3D/3dmodel.model", model(doubled, "<item objectid=\"40\"/>")}});
   ImportLimits limits;
   limits.memory_bytes = std::uint64_t{256} << 20;
@@ -193,12 +195,13 @@ TEST_F(XmlReaders, X3dTransformsInTheirOrder) {
                            triangle_shape() + "<Transform scale=\"-1 1 1\">" + triangle_shape("ccw=\"false\"") +
                            "</Transform></Transform>"));
   ASSERT_EQ(mesh.soup.triangles.size(), 2u);
-  // The corners are (0 0), (1 0), (0 1) as seen from the centre; twice as wide and turned by 90°, (0 0), (0 2), (-1 0).
+  // The corners are (0 0), (1 0), (0 1) as seen from the centre; twice as wide and turned by 90° they are (0 0), (0 2),
+  // (-1 0).
   EXPECT_LT(distance(corner(mesh.soup, 0, 0), {2, 2, 3}), 1e-15);
   EXPECT_LT(distance(corner(mesh.soup, 0, 1), {2, 4, 3}), 1e-15);
   EXPECT_LT(distance(corner(mesh.soup, 0, 2), {1, 2, 3}), 1e-15);
-  // Clockwise, and mirrored: wound as the first one's mirror image would be, then turned over. (-2 0 0) is (-3 0) from
-  // the centre.
+  // Clockwise, and mirrored: wound as the first triangle's mirror image, then turned over. (-2 0 0) is (-3 0) from the
+  // centre.
   EXPECT_LT(distance(corner(mesh.soup, 1, 1), {2, -4, 3}), 1e-15);
   EXPECT_THAT(mesh.notes, Contains(HasSubstr("1 objects mirrored")));
 }
@@ -215,7 +218,8 @@ TEST_F(XmlReaders, X3dSetsOfTrianglesHaveOneWinding) {
     const std::string name = set.substr(1, set.find_first_of(" >") - 1);
     const ImportedMesh mesh = read("set.x3d", x3d("<Shape>" + set + points + "</" + name + "></Shape>"));
     ASSERT_EQ(mesh.soup.triangles.size(), count) << set;
-    if (name == "TriangleFanSet" || name == "TriangleSet") continue;  // its second run goes round the other way
+    if (name == "TriangleFanSet" || name == "TriangleSet")
+      continue;  // the second run of these runs the other way round
     for (std::size_t t = 0; t < count; ++t) {
       const glm::dvec3 a = corner(mesh.soup, t, 0), b = corner(mesh.soup, t, 1), c = corner(mesh.soup, t, 2);
       EXPECT_GT((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x), 0) << set << t;
@@ -247,7 +251,8 @@ TEST_F(XmlReaders, X3dRefusalsSayTheLine) {
 }
 
 TEST_F(XmlReaders, X3dPrototypesHaveNamesOfTheirOwn) {
-  // Names behind an inner prototype are the outer one's again, and no prototype's name is one of the scene.
+  // After an inner prototype the outer one's names are valid again, and names inside a prototype are not names of the
+  // scene.
   const std::string inner =
       "<ProtoDeclare><ProtoBody><Group DEF=\"A\"><Shape><Box/></Shape></Group></ProtoBody></ProtoDeclare>";
   const std::string outer =
@@ -272,8 +277,8 @@ TEST_F(XmlReaders, VerticesThatAreNotFiniteMatterToTheirFaces) {
   EXPECT_THAT(penumbra::test::input_error([&] { import_mesh(path); }), HasSubstr("object '1': vertex 1 is not finite"));
 }
 
-/// Steps as the product of parts and children took a minute here; and what holds no face is placed nowhere, though it
-/// is shown a thousand billion times.
+/// With the product of parts and children as its number of steps, this took a minute. An object without faces is not
+/// placed anywhere, though it is used a thousand billion times.
 TEST_F(XmlReaders, X3dGroupsTakeTheTimeOfTheirNumber) {
   std::string wide = "<Group DEF=\"A\">" + triangle_shape();
   for (int i = 0; i < 100000; ++i) wide += "<Group/>";

@@ -11,7 +11,7 @@
 
 namespace penumbra::tests {
 
-/// The same triangles in another order; the first `kept` stay where they are.
+/// Reorders the triangles; the first `kept` stay where they are.
 inline void shuffle_order(mesh::TriangleSoup& soup, std::mt19937& random, std::size_t kept = 0) {
   std::vector<std::size_t> order(soup.triangles.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -24,7 +24,7 @@ inline void shuffle_order(mesh::TriangleSoup& soup, std::mt19937& random, std::s
   }
 }
 
-/// Each triangle from another first corner, half of them wound the other way.
+/// Starts each triangle at another corner, and winds half of them the other way.
 inline void shuffle_corners(mesh::TriangleSoup& soup, std::mt19937& random) {
   for (mesh::Triangle& triangle : soup.triangles) std::shuffle(triangle.begin(), triangle.end(), random);
 }

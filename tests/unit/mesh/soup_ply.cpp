@@ -32,7 +32,7 @@ class Folder {
 
 TEST(SoupPly, OurImporterReadsBackWhatWasWritten) {
   const Folder folder;
-  const TriangleSoup soup = test::lattice_soup(5, 40, 3);  // doubled points, zero areas: all of it must come back
+  const TriangleSoup soup = test::lattice_soup(5, 40, 3);  // doubled points, zero areas: all of them must come back
   PlyMesh ply{soup.positions, soup.triangles, {}, {}};
   for (const bool colored : {false, true}) {
     if (colored) {

@@ -28,7 +28,7 @@ inline TriangleSoup soup_of(std::vector<glm::dvec3> positions, std::vector<Trian
   return soup;
 }
 
-/// Twelve triangles, wound counter-clockwise from outside, eight positions.
+/// Returns twelve triangles with eight positions, wound counter-clockwise as seen from outside.
 inline TriangleSoup box(const glm::dvec3& low = {0, 0, 0}, const glm::dvec3& size = {1, 1, 1}) {
   std::vector<glm::dvec3> positions;
   for (int i = 0; i < 8; ++i) positions.push_back(low + size * glm::dvec3(i & 1, (i >> 1) & 1, (i >> 2) & 1));
@@ -59,7 +59,7 @@ inline TriangleSoup together(const TriangleSoup& a, const TriangleSoup& b) {
   return both;
 }
 
-/// Every triangle with positions of its own, as in an STL file.
+/// Returns the soup with separate positions for every triangle, as in an STL file.
 inline TriangleSoup shattered(const TriangleSoup& soup) {
   TriangleSoup pieces{{}, {}, soup.object, soup.source_face};
   for (const Triangle& t : soup.triangles) {
@@ -78,7 +78,7 @@ inline TriangleSoup without_triangle(TriangleSoup soup, std::size_t t) {
   return soup;
 }
 
-/// A band of `cells` quads with a half turn in it: no winding of all its triangles agrees everywhere.
+/// Returns a band of `cells` quads with a half turn in it: no winding of all its triangles agrees everywhere.
 inline TriangleSoup moebius(std::uint32_t cells) {
   std::vector<glm::dvec3> positions;
   std::vector<Triangle> triangles;
@@ -96,7 +96,7 @@ inline TriangleSoup moebius(std::uint32_t cells) {
   return soup_of(positions, triangles);
 }
 
-/// Corners drawn from {0 … cells}³: coincidences are the rule.
+/// Returns triangles with corners drawn from {0 … cells}³: coincidences are the rule.
 inline TriangleSoup lattice_soup(std::uint32_t seed, std::uint32_t triangles, int cells) {
   std::mt19937 random(seed);
   std::uniform_int_distribution<int> coordinate(0, cells);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffers keep what is written to them, and say no before the device does.
+// Tests that buffers keep their data, and that impossible sizes are refused before they reach the device.
 
 #include "tests/agreement/support.hpp"
 

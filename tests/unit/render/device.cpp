@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Choosing a device: by name, number or kind, and with a reason for every one that is refused.
+// Tests the choice of a device: by name, number or kind, and with a reason for every device that is refused.
 
 #include "tests/agreement/support.hpp"
 
@@ -31,8 +31,8 @@ TEST(DeviceChoice, SomeDeviceIsUsable) {
   }
 }
 
-/// A GPU is looked for only where a driver could talk to one: loading all drivers that are installed takes longer than
-/// a small picture.
+/// A GPU is looked for only if there is a device file through which a driver could reach one: loading all installed
+/// drivers takes longer than a small picture.
 TEST(DeviceChoice, NoDeviceFileNoGpu) {
 #ifdef __linux__
   const std::filesystem::path folder =
@@ -40,7 +40,7 @@ TEST(DeviceChoice, NoDeviceFileNoGpu) {
   std::filesystem::create_directories(folder / "dri");
   const auto make = [&](const std::string& name) { std::ofstream(folder / name) << ' '; };
   EXPECT_FALSE(has_gpu_nodes(folder / "nowhere"));
-  make("dri/card0");  // a card that only shows pictures
+  make("dri/card0");  // a card that only displays pictures
   make("nvram");
   EXPECT_FALSE(has_gpu_nodes(folder));
   make("dri/renderD128");
@@ -82,7 +82,8 @@ TEST(DeviceChoice, ARefusalNamesEveryDevice) {
   }
 }
 
-/// A module that declares these capabilities, in SPIR-V's own numbers (2.2, 2.3 and 3.31 of its specification).
+/// Returns a module that declares these capabilities, by the numbers of SPIR-V (2.2, 2.3 and 3.31 of its
+/// specification).
 std::vector<std::uint32_t> module_with(const std::vector<std::uint32_t>& capabilities) {
   constexpr std::uint32_t kMagic = 0x07230203, kVersion = 0x00010600, kCapability = 17, kMemoryModel = 14;
   std::vector<std::uint32_t> words = {kMagic, kVersion, 0, 1, 0};

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "render/group_order.glsl"
 
-// Notes, for each workgroup in the order of launch, its number; and how often each number comes.
+// Stores the number of each workgroup, in the order of launch, and counts how often each number occurs.
 
 layout(local_size_x = 1) in;
 layout(scalar, binding = 0) buffer Numbers { uint number_of[]; };

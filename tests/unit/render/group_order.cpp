@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Workgroups are numbered once each; on a processor every consecutive part of them has parts of all of the picture.
+// Tests that each workgroup gets a different number, and that on a processor every consecutive part of a launch has
+// workgroups from all over the picture.
 
 #include "tests/agreement/support.hpp"
 #include "tests/unit/render/group_order.comp.spv.hpp"
@@ -21,7 +22,7 @@ using GroupOrder = tests::DeviceTest;
 
 TEST_F(GroupOrder, NumbersEachWorkgroupOnce) {
   const ComputePass pass(device(), {.name = "group order", .spirv = shaders::kGroupOrderComp});
-  // The last number is launched in two dimensions, with one workgroup more than was wanted.
+  // The last count needs a launch in two dimensions, with one workgroup more than wanted.
   for (const std::uint32_t count : {1U, 63U, 64U, 65U, 1000U, 4096U, 70001U}) {
     const std::vector<std::uint32_t> zeros(count, 0);
     const Buffer numbers = make_buffer<std::uint32_t>(device(), "numbers", zeros),
@@ -37,7 +38,7 @@ TEST_F(GroupOrder, NumbersEachWorkgroupOnce) {
       EXPECT_TRUE(std::ranges::is_sorted(number_of)) << count << ": a GPU keeps the order of launch";
       continue;
     }
-    // Half of any eighth of a launch is in the first half of the picture, but for a strip at each end and the rest.
+    // Half of any eighth of a launch is in the first half of the picture, up to a strip at each end and the remainder.
     if (count < 4096) continue;
     for (std::uint32_t part = 0; part < 8; ++part) {
       const std::size_t first = std::size_t{part} * (count / 8);

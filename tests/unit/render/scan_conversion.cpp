@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// View samples on the processor's vectors equal their definition bit for bit where floats come to their limits: corners
-// that lie on the rays of pixels but for their own rounding, triangles far smaller than a pixel, eyes far from the
-// origin.
+// Tests that view samples found with the processor's vectors equal their definition bit for bit in cases near the
+// limits of floats: corners that lie on pixels' rays up to rounding, triangles far smaller than a pixel, eyes far from
+// the origin.
 
 #include "engines/vectors/scan_conversion.hpp"
 
@@ -39,7 +39,7 @@ std::size_t check(const scenes::Scene& scene, std::uint32_t width, std::uint32_t
   return covered;
 }
 
-/// A sphere of rings, as triangles.
+/// Returns a sphere made of rings of triangles.
 std::vector<Corners> sphere(int rings, double radius) {
   const auto at = [&](int ring, int turn) {
     const double down = std::numbers::pi * ring / rings, around = std::numbers::pi * turn / rings;
@@ -88,14 +88,14 @@ TEST(ScanConversion, CornersOnTheRaysOfPixelsAreNotLost) {
 }
 
 TEST(ScanConversion, ManyTrianglesAPixel) {
-  // Cameras outside, within, just above the surface, and so far that the whole sphere is in one pixel.
+  // Cameras outside, inside, just above the surface, and so far away that the whole sphere is in one pixel.
   scenes::Scene scene;
   tests::add_object(scene, "sphere", sphere(90, 1));
   scene.cameras.push_back(tests::camera({0.3, 0.4, 3}, {0, 0, 0}, 50));
   scene.cameras.push_back(tests::camera({0.1, 0.2, 0.3}, {1, 0, 0.2}, 120));
   scene.cameras.push_back(tests::camera({0, 0.3, 0.96}, {0.9, 0.4, 0.5}, 80));
   scene.cameras.push_back(tests::camera({0, 1e4, 1e4}, {0, 0, 0}, 1));
-  scene.cameras.push_back(tests::camera({0, 1.00001, 0}, {0.3, 0, 0.9}, 80));  // a pole is at the eye, nearly
+  scene.cameras.push_back(tests::camera({0, 1.00001, 0}, {0.3, 0, 0.9}, 80));  // a pole is almost at the eye
   EXPECT_GT(check(scene, 40, 31), 3000U);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rasterised view samples equal their definition bit for bit, also where triangles coincide, cross each other,
-// cross the eye's plane or are seen edge-on.
+// Tests that rasterised view samples equal their definition bit for bit, also where triangles coincide, cross each
+// other, cross the eye's plane or are seen edge-on.
 
 #include "tests/agreement/lattice.hpp"
 #include "tests/agreement/support.hpp"
@@ -83,7 +83,8 @@ TEST_F(VisibilityBufferTest, EqualsItsDefinitionOnTheBunny) {
 
 TEST_F(VisibilityBufferTest, TheProcessorFindsTheSameWhereMuchIsHidden) {
   // The scene has more triangles than one batch of the scan conversion, from specks to ones larger than the picture,
-  // which is no whole number of tiles; the device answers, as every triangle at every pixel would take minutes.
+  // whose size is not a multiple of a tile's. The device's result is the reference, as testing every triangle at every
+  // pixel would take minutes.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> real(-1, 1);
   const auto point = [&](double size) { return size * glm::dvec3(real(random), real(random), real(random)); };
@@ -110,7 +111,7 @@ TEST_F(VisibilityBufferTest, TheProcessorFindsTheSameWhereMuchIsHidden) {
 }
 
 TEST_F(VisibilityBufferTest, ListsOfTilesThatAreFullAreEmptiedOnTheWay) {
-  // Each triangle is in the lists of all 64 tiles, and each is there twice: the first of two carries.
+  // Each triangle is in the lists of all 64 tiles, and occurs twice: the first of the two must be the carrier.
   scenes::Scene scene;
   std::vector<tests::Corners> soup;
   for (int i = 0; i < 3000; ++i) {

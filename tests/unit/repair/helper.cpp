@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests mesh::repair, which runs run_repair in another process: the answer is the same, and an error says what went
-// wrong and where if that process is missing, crashes or sends a damaged answer.
+// Tests mesh::repair, which runs run_repair in another process: the answer is the same, and if that process is missing,
+// crashes or sends a damaged answer, the error says what went wrong and where.
 
 #include "base/error.hpp"
 #include "mesh/repair.hpp"
@@ -89,7 +89,7 @@ TEST_F(RepairHelper, CrashesAndLiesAreResourceErrors) {
   EXPECT_THAT(refusal(), HasSubstr("gave up (exit code 7)"));
   use_helper("echo hello");
   EXPECT_THAT(refusal(), HasSubstr("is damaged"));
-  use_helper(R"(printf 'PNBRIMP1\000\000\377\377\377\377\377\377\377\177')");  // 2^63 positions
+  use_helper(R"(printf 'PNBRIMP1\000\000\377\377\377\377\377\377\377\177')");  // claims 2^63 positions
   EXPECT_THAT(refusal(), HasSubstr("longer than the answer"));
   use_helper(R"(printf 'PNBRIMP1\001\004\000\000\000\000\000\000\000oops')");
   EXPECT_THAT(refusal(), HasSubstr("the repair helper: oops"));

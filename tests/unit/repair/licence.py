@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""licence.py BUILD: no object of the library, the programs or the Python module depends on a header that is under the GPL alone.
+"""licence.py BUILD: tests that no object of the library, the programs or the Python module depends on a header that is
+under the GPL alone.
 
-Reads what ninja has recorded of each object's headers, and their SPDX lines. The objects of penumbra-repair, which is a program of
-its own for that reason, and of tests may; penumbra-repair must, or this test would look at nothing.
+Reads each object's headers as ninja has recorded them, and the headers' SPDX lines. Such headers are allowed in objects of
+tests and of penumbra-repair, which is a separate program for that reason. penumbra-repair must depend on one: otherwise
+this test would examine nothing.
 """
 import re
 import subprocess
@@ -14,7 +16,8 @@ SKIPPED = 77
 
 
 def is_gpl_alone(header, known={}):
-    """Returns whether the file is under the GPL without the choice of LGPL or of a free licence beside it, and without an exception as Linux has."""
+    """Returns whether the file is under the GPL, without LGPL or a permissive licence as an alternative, and without an exception
+    like that of Linux."""
     if header not in known:
         try:
             with open(header, encoding="utf-8", errors="replace") as file:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repair of known defects, with the counts that it must report, and of random lattice soups, where it must keep its
-// promises: an oriented manifold by indices, the same points, its own input untouched, and nothing left for a second
-// repair.
+// Tests repair of known defects, with the counts that it must report, and of random lattice soups, for which it must
+// keep its promises: an oriented manifold by indices, the same points, its input unchanged, and nothing left for a
+// second repair.
 
 #include "repair/run_repair.hpp"
 
@@ -176,9 +176,9 @@ TEST(Repair, RemovesWhatHasNoAreaAndWhatRepeats) {
   };
   add({0, 0, 5});
   soup.positions.emplace_back(0.5, 0, 0);
-  add({0, 8, 1});          // attached to an edge: no other triangle uses its middle
-  add(soup.triangles[3]);  // repeats triangle 3
-  add({soup.triangles[5][0], soup.triangles[5][2], soup.triangles[5][1]});  // and one wound the other way
+  add({0, 8, 1});          // meets only an edge: no other triangle uses the edge's middle
+  add(soup.triangles[3]);  // a copy of triangle 3
+  add({soup.triangles[5][0], soup.triangles[5][2], soup.triangles[5][1]});  // a copy of triangle 5, wound the other way
   const Repaired repaired = repair_and_check(soup);
   EXPECT_EQ(count_of(repaired, "at one point"), 1u);
   EXPECT_EQ(count_of(repaired, "on a line"), 1u);
@@ -191,7 +191,7 @@ TEST(Repair, ClosesTheCrackThatAZeroAreaTriangleLeaves) {
   // The box's edge 0-1 is split at its middle on one side only; a triangle without area fills the crack.
   TriangleSoup soup = test::box();
   soup.positions.emplace_back(0.5, 0, 0);
-  soup = test::without_triangle(soup, 4);  // (0, 1, 5)
+  soup = test::without_triangle(soup, 4);  // removes (0, 1, 5)
   for (const Triangle& t : {Triangle{0, 8, 5}, Triangle{8, 1, 5}, Triangle{0, 1, 8}}) {
     soup.triangles.push_back(t);
     soup.object.push_back(4);
@@ -224,7 +224,7 @@ TEST(Repair, SplitsWhereSolidsTouch) {
   EXPECT_TRUE(edge.left.empty()) << sentences(edge);
   EXPECT_DOUBLE_EQ(volume(edge.soup), 2);
 
-  // Two boxes with a common wall, all positions shared: both closed again.
+  // Two boxes with a common wall and shared positions become two closed boxes again.
   const Repaired wall = repair_and_check(test::together(test::box(), test::box({1, 0, 0})));
   EXPECT_TRUE(wall.left.empty()) << sentences(wall);
   EXPECT_EQ(expect_manifold(wall.soup), 0u);
@@ -236,7 +236,7 @@ TEST(Repair, FillsHolesUpToTheSizeAskedFor) {
   sphere.segments = 12;
   sphere.rings = 8;
   TriangleSoup soup = make_sphere(sphere);
-  std::erase_if(soup.triangles, [&](const Triangle& t) {  // the cap above the first ring: a hole of 12 edges
+  std::erase_if(soup.triangles, [&](const Triangle& t) {  // removes the cap above the first ring: a hole of 12 edges
     return std::ranges::any_of(t, [&](std::uint32_t i) { return soup.positions[i].y > 0.99; });
   });
   soup.object.assign(soup.triangles.size(), 4);
@@ -278,7 +278,8 @@ TEST(Repair, ResolvesALocalSelfIntersectionAndListsWhatItCannot) {
   TriangleSoup soup = make_icosphere({0, 0, 0}, 1, 4);  // 5,120 triangles, edges about 0.07 long
   const Triangle corners = soup.triangles[1000];
   glm::dvec3& moved = soup.positions[corners[0]];
-  moved += 3.0 * (soup.positions[corners[1]] - moved);  // across its neighbours, and out of their surface
+  moved +=
+      3.0 * (soup.positions[corners[1]] - moved);  // moves the vertex across its neighbours and out of their surface
   const Repaired repaired = repair_and_check(soup, {.resolve_self_intersections = true});
   EXPECT_GT(count_of(repaired, "resolved"), 0u) << sentences(repaired);
   EXPECT_TRUE(repaired.left.empty()) << sentences(repaired);

@@ -16,7 +16,7 @@
 namespace penumbra::test {
 namespace {
 
-/// Pretends that the disk has room for so many bytes, for as long as it lives.
+/// While this object lives, the disk appears to have room for the given number of bytes only.
 class DiskQuota {
  public:
   explicit DiskQuota(const char* bytes) { ::setenv("PENUMBRA_TEST_DISK_QUOTA", bytes, 1); }
@@ -47,7 +47,7 @@ TEST(AtomicFile, WithoutCommitNothingIsLeftAndTheOldFileStays) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
-/// Makes files as on a file system without nameless files, while this object lives.
+/// While this object lives, files are made as on a file system without nameless files.
 class NamedParts {
  public:
   NamedParts() { ::setenv("PENUMBRA_TEST_NAMED_PARTS", "1", 1); }
@@ -58,7 +58,8 @@ class NamedParts {
 
 TEST(AtomicFile, HasNoNameUntilItIsWhole) {
   const TemporaryFolder folder;
-  const int nameless = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600);  // not every file system
+  const int nameless = ::open(folder.path().c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC,
+                              0600);  // some file systems have no nameless files
   if (nameless >= 0) ::close(nameless);
   AtomicFile file(folder / "out.txt");
   file.write(std::string_view("half"));
@@ -78,7 +79,7 @@ TEST(AtomicFile, ReplacesAnOldFileEitherWay) {
   EXPECT_EQ(folder.names().size(), 1u);
 }
 
-/// Runs `body` in a process of its own, which ends without any cleaning up.
+/// Runs `body` in a separate process, which ends without any cleaning up.
 template <typename Body>
 void in_process_that_dies(Body body) {
   const pid_t child = ::fork();
@@ -102,7 +103,8 @@ TEST(AtomicFile, PartsOfDeadProcessesAreRemovedAndOthersAreNot) {
   ASSERT_EQ(folder.names().size(), 1u);
   const std::string orphan = folder.names().front();
   EXPECT_TRUE(orphan.starts_with(".penumbra-") && orphan.ends_with(".part.exr")) << orphan;
-  // Temporary files of another machine, or of this one before its last start; and a file that is nobody's temporary.
+  // Temporary files of another machine, or of this one before its last start; and a file that only looks like a
+  // temporary one.
   (void)folder.write(".penumbra-00000000-1-0.part.exr", "not ours");
   (void)folder.write(".penumbra-notes.part", "not ours");
   AtomicFile live(folder / "live.exr");

@@ -10,7 +10,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
-/// Tests which files a scene may name, and what is said of those that it may not.
+/// Tests which files a scene may name, and the messages about those that it may not.
 namespace penumbra::test {
 namespace {
 
@@ -34,7 +34,7 @@ TEST(SceneFiles, MissingSceneFolderAndOtherKinds) {
   expect_error(ExitCode::input, "not a regular file", [&] { read_scene(folder / "pipe.json"); });
 }
 
-/// No file can be opened while this object lives: every number is beyond the limit.
+/// While this object lives no file can be opened: every descriptor is beyond the limit.
 class NoDescriptors {
  public:
   NoDescriptors() {

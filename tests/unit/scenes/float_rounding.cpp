@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-/// A guard against our compiler. g++ 12 at -O2 (its SLP vectoriser) takes two neighbouring double → float → double
-/// conversions for nothing and drops the rounding, sometimes even where the floats are stored in between. Scene floats
-/// and p are defined by that rounding, so the build passes -fno-tree-slp-vectorize; this test fails where the flag is
-/// lost.
+/// Guards against our compiler. g++ 12 at -O2 (its SLP vectoriser) removes two neighbouring double → float → double
+/// conversions together with their rounding, sometimes even where the floats are stored in between. Scene floats and p
+/// are defined by that rounding, so the build passes -fno-tree-slp-vectorize; this test fails if the flag is lost.
 namespace penumbra::test {
 namespace {
 

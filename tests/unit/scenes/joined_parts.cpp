@@ -53,7 +53,7 @@ TEST(JoinedParts, AreTheSceneThatWasCut) {
   const std::vector<ScenePart> parts = {{&scene, 0, 1, 0, 0}, {&scene, 1, 1, 0, 1}, {&scene, 2, 1, 1, 1}};
   const Scene whole = joined(parts, true);
   expect_same(whole, scene);
-  EXPECT_EQ(whole.pictures, scene.pictures);  // once, though there are three parts
+  EXPECT_EQ(whole.pictures, scene.pictures);  // stored once, though there are three parts
   const Scene without = joined(parts, false);
   EXPECT_TRUE(without.soup.triangles.empty());
   EXPECT_EQ(without.objects[1].emits, scene.objects[1].emits);
@@ -86,7 +86,7 @@ TEST(JoinedParts, NumberPicturesByObjectsAlone) {
   const Scene old = three_objects(), edited = three_objects();
   const Scene lamps = three_objects();
   const ScenePart mesh{&old, 1, 1, 0, 1}, edited_mesh{&edited, 1, 1, 0, 1};
-  // The lamp comes first, from the file of the second mesh; then it is replaced alone.
+  // The lamp comes first, from the file that the second mesh also comes from; then only the lamp is replaced.
   const std::vector<ScenePart> before = {{&old, 0, 0, 1, 1}, edited_mesh, mesh};
   const std::vector<ScenePart> after = {{&lamps, 0, 0, 1, 1}, edited_mesh, mesh};
   const Scene whole = joined(before, true), without = joined(after, false);

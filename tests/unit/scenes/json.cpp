@@ -6,7 +6,7 @@
 #include <ostream>
 #include <string>
 
-/// Each way to get a scene file wrong, and what the program says to it.
+/// Tests every kind of error in a scene file, and the program's message about it.
 namespace penumbra::test {
 namespace {
 

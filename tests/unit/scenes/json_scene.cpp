@@ -9,7 +9,7 @@
 #include <string>
 #include <variant>
 
-/// Tests what a scene file says, and how the program understands it.
+/// Tests how the program understands the contents of a scene file.
 namespace penumbra::test {
 namespace {
 
@@ -92,7 +92,8 @@ TEST(JsonScene, LinksLightsAndMeshes) {
 }
 
 TEST(JsonScene, RotatesAboutXThenYThenZThenTranslates) {
-  // (0, 1, 0): scaled to (0, 2, 0), about X by 90 → (0, 0, 2), about Y by 90 → (2, 0, 0), about Z by 90 → (0, 2, 0).
+  // (0, 1, 0): scaled to (0, 2, 0); turned about X by 90 → (0, 0, 2), about Y by 90 → (2, 0, 0), about Z by 90 → (0, 2,
+  // 0).
   const auto scene = read_text(scene_text(R"({"triangles": [[0,1,0, 1,0,0, 0,0,1]],
       "transform": {"scale": 2, "rotate": [90, 90, 90], "translate": [10, 20, 30]}})"));
   EXPECT_EQ(scene.soup.positions[0], glm::dvec3(10, 22, 30));
@@ -151,7 +152,7 @@ TEST(JsonScene, SkewedRectangleIsSaid) {
   EXPECT_NE(oval.warnings[0].find("/lights/0/ellipse: halfU and halfV are not at right angles"), std::string::npos);
 }
 
-/// --camera asks for them by name.
+/// --camera selects cameras by name.
 TEST(JsonScene, CamerasOfOneNameGetNumbers) {
   const TemporaryFolder folder;
   const std::string one = R"({"name": "shot", "eye": [0, 2, 6], "target": [0, 1, 0]})";

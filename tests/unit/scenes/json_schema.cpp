@@ -21,7 +21,7 @@
 namespace penumbra::test {
 namespace {
 
-/// Validator of the library valijson, which implements all of JSON Schema.
+/// Validator from the library valijson, which implements all of JSON Schema.
 class Library {
  public:
   explicit Library(const nlohmann::json& schema) {
@@ -37,7 +37,7 @@ class Library {
   valijson::Schema schema_;
 };
 
-/// All values in a document, the outermost first.
+/// Lists all values in a document, the outermost first.
 void list_values(nlohmann::json& document, std::vector<nlohmann::json*>& values) {
   values.push_back(&document);
   if (!document.is_structured()) return;
@@ -123,7 +123,7 @@ TEST(JsonSchema, DecidesAsALibraryDoes) {
   EXPECT_GT(refused, 1500);
 }
 
-/// Checks that every object with properties in the schema refuses other keys.
+/// Every object with properties in the schema refuses other keys.
 TEST(JsonSchema, NoObjectTakesUnknownKeys) {
   const auto schema = nlohmann::json::parse(scenes::kSceneSchemaText);
   int objects = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of light kinds: what files make of each, and that no row is forgotten.
+// Tests the tables of light kinds: how scene files represent each kind, and that no row is missing.
 #include "scenes/formats/writer.hpp"
 #include "scenes/light_kind.hpp"
 #include "tests/unit/scenes/support.hpp"
@@ -19,7 +19,7 @@ namespace {
 using scenes::LightKind;
 using scenes::LightKinds;
 
-/// The value of each kind's key, in the order of the table. None is what a default-made shape would be.
+/// The value of each kind's key, in the order of the table. None of them equals a default-constructed shape.
 constexpr std::array kValues{
     R"({"center": [0, 5, 0], "halfU": [0.1, 0, 0], "halfV": [0, 0, 0.3]})",
     R"({"center": [2, 5, 0], "normal": [0.6, -0.8, 0], "radius": 0.4})",
@@ -53,7 +53,7 @@ TEST(LightKinds, SchemaKnowsEachNameAndNoOther) {
   EXPECT_EQ(keys, expected);
 }
 
-/// Read, written, read and written again: the kind stays, and so does the text of the light.
+/// Reading and writing a light twice keeps its kind and its text.
 TEST(LightKinds, GoThroughJsonUnchanged) {
   for (std::size_t i = 0; i < kValues.size(); ++i) {
     const scenes::Scene scene = read_text(scene_text(kMesh, light_text(i)));
@@ -73,7 +73,7 @@ TEST(LightKinds, GoIntoGltfAsLampsOrMeshes) {
   for (std::size_t i = 0; i < kValues.size(); ++i) {
     const scenes::Scene scene = read_text(scene_text(kMesh, light_text(i)));
     const TemporaryFolder folder;
-    if (scenes::is_dome(scenes::kLightTraits[i].kind)) {  // core glTF has no sky
+    if (scenes::is_dome(scenes::kLightTraits[i].kind)) {  // core glTF has no kind of light for a sky
       EXPECT_THROW(scenes::write_scene(scene, folder / "scene.glb"), InputError);
       continue;
     }

@@ -26,7 +26,7 @@ struct Shape {
   TriangleSoup soup;
   std::size_t triangles;
   bool closed;
-  double volume;  ///< of the ideal solid; the mesh may fall short by `share`
+  double volume;  ///< volume of the ideal solid; the mesh's may be smaller by `share`
   double share;
 };
 
@@ -50,7 +50,7 @@ std::vector<Shape> shapes() {
       {"terrain", mesh::make_terrain({.cells = {7, 9}}), 126, false, 0, 0},
       {"fence", mesh::make_fence({.posts = 5, .rails = 3}), 96, true, 5 * 0.0009 + 3 * 4 * 0.0009, 1e-9},
       {"hair", mesh::make_hair({.strands = 11, .segments = 4}), 88, false, 0, 0},
-      // Outer box less inner box less the window's hole.
+      // Volume: outer box minus inner box minus the window's hole.
       {"room", mesh::make_room({.vertical_bars = 0, .horizontal_bars = 0}), 44, true,
        4.3 * 2.8 * 4.3 - 4 * 2.5 * 4 - 1.4 * 1.2 * 0.15, 1e-9},
       {"room with bars", mesh::make_room({.vertical_bars = 2, .horizontal_bars = 1}), 44 + 36, true, 0, 0},
@@ -58,7 +58,7 @@ std::vector<Shape> shapes() {
   };
 }
 
-/// Every directed edge once, and its opposite once.
+/// Returns whether every directed edge occurs once, and its opposite once.
 bool is_closed_manifold(const TriangleSoup& soup) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const mesh::Triangle& t : soup.triangles) {
@@ -161,7 +161,7 @@ TEST(Shapes, SameParametersSameNumbersOtherSeedOthers) {
   EXPECT_NE(mesh::make_hair({}).positions, mesh::make_hair({.seed = 2}).positions);
 }
 
-/// The height's documented bounds.
+/// The height stays within its documented bounds.
 TEST(Shapes, TerrainStaysWithinItsHeight) {
   for (const glm::dvec3& p : mesh::make_terrain({.center = {0, 10, 0}, .height = 3, .cells = {200, 200}}).positions) {
     EXPECT_GE(p.y, 8.5);
@@ -186,7 +186,8 @@ TEST(Shapes, TooFineIsRefusedBeforeMemoryIsAsked) {
                [] { mesh::make_grid({.cells_u = 60000, .cells_v = 60000}); });
 }
 
-/// The schema's defaults are annotations; the options structs decide. Writing a default out must change nothing.
+/// The schema's defaults are only annotations; the options structs hold the real ones. Writing a default out must
+/// change nothing.
 TEST(Shapes, SchemaKnowsTheDefaults) {
   const auto schema = nlohmann::json::parse(scenes::kSceneSchemaText);
   int types = 0;

@@ -40,7 +40,7 @@ TEST(Studio, AMeshGetsALightAFloorAndACamera) {
   EXPECT_THAT(scene.warnings,
               Contains(HasSubstr("one soft rectangle light, a floor below it, a camera that frames it")));
 
-  // The light faces the middle, and gives what faces it there an irradiance of pi.
+  // The light faces the middle, and gives a surface there that faces the light an irradiance of pi.
   ASSERT_EQ(scene.lights.size(), 1U);
   const auto& light = std::get<scenes::Rectangle>(scene.lights[0].shape);
   const glm::dvec3 middle(0, 4, 0), normal = glm::cross(light.half_u, light.half_v);
@@ -54,16 +54,17 @@ TEST(Studio, AMeshGetsALightAFloorAndACamera) {
   ASSERT_EQ(scene.cameras.size(), 1U);
   const scenes::Camera& camera = scene.cameras[0];
   EXPECT_EQ(camera.target, middle);
-  const double sine = std::sqrt(3.0) / glm::distance(camera.eye, middle);  // of half the box's diagonal
+  const double sine =
+      std::sqrt(3.0) / glm::distance(camera.eye, middle);  // the sphere's radius is half of the box's diagonal
   EXPECT_NEAR(std::asin(sine) * 180 / std::numbers::pi, camera.vertical_fov / 2, 1e-9);
 
-  // A picture half as wide as high holds the mesh within the cone of half the width.
+  // In a picture half as wide as high, the mesh is within the cone of half the width.
   const scenes::Camera upright = read(kTetrahedron, {.aspect = 0.5}).cameras[0];
   EXPECT_NEAR(std::asin(std::sqrt(3.0) / glm::distance(upright.eye, middle)),
               std::atan(0.5 * std::tan(camera.vertical_fov / 360 * std::numbers::pi)), 1e-12);
 }
 
-// The floor and the camera stay between keys where they are at rest.
+// While the scene moves between keys, the floor and the camera stay where they are at rest.
 TEST(Studio, StandsStillWhileASceneMoves) {
   const scenes::Scene rest = read(kTetrahedron, {.never = true, .fit_camera = "fit"});
   scenes::Scene moved = rest;
@@ -79,7 +80,8 @@ TEST(Studio, WhatLiesOnAFloorGetsNoOther) {
   const std::string ground = "v -2 3 -2\nv 2 3 -2\nv 2 3 2\nv -2 3 2\nf 5 8 7 6\n";
   EXPECT_EQ(read((kTetrahedron + ground).c_str()).objects.size(), 1U);
   EXPECT_EQ(read(kTetrahedron, {.floor = false}).objects.size(), 1U);
-  const std::string bottom = "v -2 3 -2\nv 2 3 -2\nv 2 3 2\nv -2 3 2\nf 5 6 7 8\n";  // a body's own, which faces down
+  const std::string bottom =
+      "v -2 3 -2\nv 2 3 -2\nv 2 3 2\nv -2 3 2\nf 5 6 7 8\n";  // the body's own underside, which faces down
   EXPECT_EQ(read((kTetrahedron + bottom).c_str()).objects.size(), 2U);
 }
 
@@ -103,7 +105,7 @@ TEST(Studio, LightsAndCamerasAsWished) {
   ASSERT_EQ(scene.cameras.size(), 2U);
   EXPECT_EQ(scene.cameras[0].name, "own");
   EXPECT_EQ(scene.cameras[1].name, "fit");
-  EXPECT_EQ(scene.objects.size(), 2U);  // the floor is the studio's, whoever lights it
+  EXPECT_EQ(scene.objects.size(), 2U);  // the floor is still the studio's
 }
 
 TEST(Studio, ScenesWithLightsStayAsTheyAre) {
@@ -113,7 +115,7 @@ TEST(Studio, ScenesWithLightsStayAsTheyAre) {
   EXPECT_THAT(plain.warnings, IsEmpty());
   const scenes::Scene with = scenes::read_scene(file, {.studio = {.always = true}});
   EXPECT_EQ(with.lights.size(), plain.lights.size() + 1);
-  EXPECT_EQ(with.lights[0].name, plain.lights[0].name);  // the scene's own stays the first
+  EXPECT_EQ(with.lights[0].name, plain.lights[0].name);  // the scene's own light stays the first
   expect_error(ExitCode::input, "there is no light in the scene",
                [&] { scenes::read_scene(folder.write("thing.obj", kTetrahedron), {.studio = {.never = true}}); });
 }

@@ -18,7 +18,7 @@
 
 namespace penumbra::test {
 
-/// A folder of its own for each test, gone afterwards.
+/// A folder for one test, deleted afterwards.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -78,7 +78,7 @@ inline constexpr const char* kMesh =
 inline constexpr const char* kLight =
     R"({"name": "key", "rectangle": {"center": [0,5,0], "halfU": [1,0,0], "halfV": [0,0,1]}})";
 
-/// A complete scene, of which one part may be another.
+/// Returns the text of a complete scene; its mesh, light or camera may be replaced.
 inline std::string scene_text(const std::string& mesh = kMesh, const std::string& light = kLight,
                               const std::string& camera = kCamera) {
   return fmt::format(R"({{"format": "penumbra-scene/1", {}, "meshes": [{}], "lights": [{}]}})", camera, mesh, light);

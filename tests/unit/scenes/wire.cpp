@@ -210,7 +210,7 @@ TEST(SceneWire, WhatNoSceneHasIsRefused) {
   refuses("a mode", [](Scene& s) { s.objects[0].alpha.mode = static_cast<Alpha::Mode>(3); });
 }
 
-/// Returns the bytes of a scene up to the shape of its only light.
+/// Returns the bytes of a message up to the shape of the scene's only light.
 WireWriter up_to_shape() {
   WireWriter to;
   to.put_string("scene");

@@ -15,7 +15,8 @@
 #include <string>
 #include <variant>
 
-/// Tests that written scenes read back: to the last bit from JSON, triangle by triangle from OBJ. GLB: writer_glb.cpp.
+/// Tests that written scenes read back: to the last bit from JSON, triangle by triangle from OBJ. For GLB see
+/// writer_glb.cpp.
 namespace penumbra::test {
 namespace {
 
@@ -23,7 +24,7 @@ using scenes::read_scene;
 using scenes::Scene;
 using scenes::write_scene;
 
-/// Distinguishes −0 from 0.
+/// Returns whether the bits are equal: distinguishes −0 from 0.
 bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
@@ -127,7 +128,7 @@ TEST(JsonWriter, AnyFiniteDoubleSurvives) {
   scene.soup.positions = {
       {-0.0, 0.0, 5e-324}, {1e12, -1e12, 1 / 3.0}, {9007199254740993.0 / 65536, 0.1, 123456789012.0}};
   scene.soup.triangles = {{0, 1, 2}};
-  while (scene.soup.positions.size() < 3000) {  // random bits, whose magnitudes are all over the range
+  while (scene.soup.positions.size() < 3000) {  // random bits, so that magnitudes cover the whole range
     glm::dvec3 position;
     for (int axis = 0; axis < 3; ++axis) {
       do {

@@ -19,7 +19,7 @@ using scenes::read_scene;
 using scenes::Scene;
 using scenes::write_scene;
 
-/// The nearest float32, as a double.
+/// Returns the nearest float32 of each coordinate, as a double.
 glm::dvec3 rounded(const glm::dvec3& v) {
   return glm::dvec3(glm::vec3(v));
 }
@@ -82,7 +82,7 @@ TEST(GlbWriter, NamesLossesOfGltf) {
   }
 }
 
-/// Names of lights are not those of their bodies.
+/// Lights keep names that differ from those of their bodies.
 TEST(GlbWriter, LightsKeepTheirNames) {
   const TemporaryFolder folder;
   const std::string panel =
@@ -120,7 +120,7 @@ TEST(GlbWriter, DarkLightsLeaveNoGeometry) {
   EXPECT_EQ(again.soup.triangles.size(), scene.soup.triangles.size());
 }
 
-/// Suns, spheres and spots are lamps of KHR_lights_punctual, with their sizes as extras.
+/// Suns, spheres and spots are written as lamps of KHR_lights_punctual, with their sizes as extras.
 TEST(GlbWriter, LampsReadBack) {
   const TemporaryFolder folder;
   Scene scene = read_text(kEverything);
@@ -162,7 +162,7 @@ TEST(GlbWriter, LampsReadBack) {
   EXPECT_EQ(again.cameras.at(1).lens, (scenes::ThinLens{0.07, 2.3}));
 }
 
-/// Pictures, alpha, colours and normals, to the last bit where they are float32.
+/// Pictures, alpha, colours and normals come back, to the last bit where they are float32.
 TEST(GlbWriter, SurfacesReadBack) {
   const TemporaryFolder folder;
   Scene scene = read_text(kEverything);

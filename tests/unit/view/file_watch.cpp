@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file counts as changed once it has been the same at two looks.
+// Tests that a file counts as changed only after it has been the same at two checks.
 #include "app/view/file_watch.hpp"
 
 #include <gtest/gtest.h>

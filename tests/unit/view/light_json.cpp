@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights and cameras as the page has them: there and back nothing changes, and what a file could not say is refused.
+// Tests lights and cameras in the page's form: converting there and back changes nothing, and values that a scene file
+// could not have are refused.
 #include "app/view/light_json.hpp"
 
 #include "base/error.hpp"
@@ -34,7 +35,8 @@ TEST(LightJson, EveryShapeComesBack) {
     EXPECT_EQ(read.shape.index(), shape.index());
     EXPECT_NEAR(read.radiance.x, 3, 1e-12) << written;
     json again = light_json(read);
-    for (const char* bright : {"radiance", "irradiance"}) {  // of a sun divided and multiplied
+    for (const char* bright :
+         {"radiance", "irradiance"}) {  // a sun's radiance is an irradiance divided by a number and multiplied again
       if (!again.contains(bright)) continue;
       EXPECT_NEAR(again[bright][0].get<double>(), written[bright][0].get<double>(), 1e-12);
       again[bright] = written[bright];
@@ -50,7 +52,8 @@ TEST(LightJson, ASunsIrradianceStaysWhenItsAngleChanges) {
   EXPECT_NEAR(written["irradiance"][0].get<double>(), 3 * std::numbers::pi * sine * sine, 1e-12);
   const double before = written["irradiance"][1].get<double>();
   written["sun"]["angle"] = 0;
-  EXPECT_NEAR(changed_light(sun, written).radiance.y, before, 1e-12);  // of a point: irradiance itself
+  EXPECT_NEAR(changed_light(sun, written).radiance.y, before,
+              1e-12);  // the irradiance of a point-like sun is stored itself
 }
 
 TEST(LightJson, WhatThePageDoesNotKnowStays) {
@@ -117,7 +120,7 @@ TEST(LightJson, Cameras) {
   EXPECT_EQ(read.shift, camera.shift);
   moved["target"] = moved["eye"];
   EXPECT_THROW(changed_camera(camera, moved), InputError);
-  moved["target"] = {3, 9, 3};  // along `up`
+  moved["target"] = {3, 9, 3};  // parallel to `up`
   EXPECT_THROW(changed_camera(camera, moved), InputError);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlines of occluders projected from a point onto a light, against places found by hand.
+// Tests outlines of occluders projected from a point onto a light against places found by hand.
 #include "app/view/light_outline.hpp"
 
 #include <glm/geometric.hpp>
@@ -11,7 +11,7 @@
 namespace penumbra::app {
 namespace {
 
-/// A triangle of height 1, and below it one that carries the origin.
+/// A triangle at height 1, and a floor below it that carries the origin.
 scenes::Scene scene_of(const scenes::LightShape& shape) {
   scenes::Scene scene;
   scene.soup.positions = {{-9, 0, 9}, {9, 0, 9}, {0, 0, -9}, {0, 1, 0}, {0.25, 1, 0}, {0, 1, 0.5}};
@@ -38,35 +38,36 @@ void expect_places(const std::vector<glm::dvec2>& found, const std::vector<glm::
 }
 
 TEST(LightOutline, OfARectangleIsFlattenedFromThePoint) {
-  // Four high, two across, shining down: from the origin what is one high appears four times as large.
+  // A light at height 4, two wide, shining down: seen from the origin, an occluder at height 1 appears four times as
+  // large.
   const auto scene = scene_of(scenes::Rectangle{{0, 4, 0}, {2, 0, 0}, {0, 0, 4}});
   const auto outline = outline_of(scene);
   ASSERT_TRUE(outline);
   EXPECT_EQ(outline->rim, LightOutline::Rim::square);
-  ASSERT_EQ(outline->blockers.size(), 1U);  // the floor that carries the point is none
+  ASSERT_EQ(outline->blockers.size(), 1U);  // the floor that carries the point is not a blocker
   expect_places(outline->blockers[0], {{0, 0}, {0.5, 0}, {0, 0.5}});
-  const auto beside = outline_of(scene, {0.9, 0, 0});  // x 0 lies at 0.9 + 4 (0 - 0.9) = -2.7
+  const auto beside = outline_of(scene, {0.9, 0, 0});  // x = 0 is projected to 0.9 + 4 (0 - 0.9) = -2.7
   ASSERT_TRUE(beside);
   expect_places(beside->blockers[0], {{-1.35, 0}, {-0.85, 0}, {-1.35, 0.5}});
 }
 
 TEST(LightOutline, IsOfWhatIsBetween) {
   auto scene = scene_of(scenes::Rectangle{{0, 4, 0}, {2, 0, 0}, {0, 0, 4}});
-  EXPECT_FALSE(outline_of(scene, {0, 5, 0}));  // behind it
+  EXPECT_FALSE(outline_of(scene, {0, 5, 0}));  // the point is behind the light
   for (const double height : {-1.0, 4.5}) {
     for (std::size_t i = 3; i < 6; ++i) scene.soup.positions[i].y = height;
     EXPECT_TRUE(outline_of(scene)->blockers.empty()) << height;
   }
   scene.soup.positions[3] = {0, 2, 0};
   scene.soup.positions[4] = {0.5, 2, 0};
-  scene.soup.positions[5] = {0, 6, 0.5};  // behind the light: cut in the light's plane, half way
+  scene.soup.positions[5] = {0, 6, 0.5};  // behind the light: cut at the light's plane, half way
   expect_places(outline_of(scene)->blockers[0], {{0, 0}, {0.5, 0}, {0.125, 0.0625}, {0, 0.0625}});
   scene.objects[1].casts_shadow = false;
   EXPECT_TRUE(outline_of(scene)->blockers.empty());
 }
 
 TEST(LightOutline, OfRoundLightsIsACircle) {
-  // A sphere of radius 1 at distance 2: half an angle of 30 degrees.
+  // A sphere of radius 1 at distance 2 is seen under a half angle of 30 degrees.
   const double tangent = std::numbers::sqrt3 / 3;
   for (const scenes::LightShape& shape :
        {scenes::LightShape(scenes::Sphere{{0, 2, 0}, 1}), scenes::LightShape(scenes::Sun{{0, -1, 0}, 60})}) {

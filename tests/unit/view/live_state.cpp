@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests what messages, and a file that changes, do to the state.
+// Tests what messages from the page, and a changed file, do to the state.
 #include "app/view/live_state.hpp"
 
 #include "app/view/light_json.hpp"
@@ -67,7 +67,7 @@ TEST(LiveState, BodiesKeepTheirLightsWhereTheyAre) {
   scene.objects.back().emits = 0;
   LiveState state = live_state(std::move(scene), "");
   EXPECT_THROW(apply(state, {{"type", "light"}, {"name", "key"}, {"light", sphere(3)}}), InputError);
-  apply(state, {{"type", "light"}, {"name", "key"}, {"light", sphere(4)}});  // another radiance alone
+  apply(state, {{"type", "light"}, {"name", "key"}, {"light", sphere(4)}});  // only another radiance
   EXPECT_EQ(state.scene.lights[0].radiance, glm::dvec3(1));
   apply(state, {{"type", "light"}, {"name", "rim"}, {"light", sphere(3)}});
 }
@@ -81,8 +81,8 @@ TEST(LiveState, OfANewFileWhatItSaysOtherwiseIsTaken) {
   scenes::Scene now = before;
   std::get<scenes::Sphere>(now.lights[1].shape).center.y = 9;
   const LiveState made = reloaded(state, before, now);
-  EXPECT_EQ(std::get<scenes::Sphere>(made.scene.lights[0].shape).center.y, 1);  // by hand
-  EXPECT_EQ(std::get<scenes::Sphere>(made.scene.lights[1].shape).center.y, 9);  // the file's
+  EXPECT_EQ(std::get<scenes::Sphere>(made.scene.lights[0].shape).center.y, 1);  // moved by hand
+  EXPECT_EQ(std::get<scenes::Sphere>(made.scene.lights[1].shape).center.y, 9);  // from the changed file
   EXPECT_EQ(made.camera.eye, glm::dvec3(1));
   now.cameras[0].eye = {0, 0, 7};
   EXPECT_EQ(reloaded(state, before, now).camera.eye, glm::dvec3(0, 0, 7));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quality of quick pictures follows what they take.
+// Tests that the quality of quick pictures follows the time that they take.
 #include "app/view/live_pace.hpp"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,8 @@
 namespace penumbra::app {
 namespace {
 
-/// Milliseconds of a picture of 512 × 512 pixels on a machine that takes so long for a light sample of a pixel.
+/// Milliseconds for a picture of 512 × 512 pixels on a machine that takes `nanoseconds` for one light sample of a
+/// pixel.
 double cost(LiveQuality quality, double nanoseconds) {
   return 512.0 * 512.0 / (quality.divisor * quality.divisor) * (20 + quality.light_samples) * nanoseconds * 1e-6;
 }
@@ -21,7 +22,7 @@ TEST(LivePace, SettlesWherePicturesAreInTime) {
       slow += milliseconds > kPictureTime ? 1 : 0;
       pace.took(milliseconds);
     }
-    EXPECT_LE(slow, 10) << nanoseconds;  // while it looks for a better level
+    EXPECT_LE(slow, 10) << nanoseconds;  // slow pictures occur while it looks for a better level
   }
 }
 
@@ -51,7 +52,7 @@ TEST(SlowMethods, AreThoseThatAreSlowAtTheLowestQuality) {
   slow.took("b", kPictureTime, true);
   EXPECT_FALSE(slow.contains("a") || slow.contains("b"));
   slow.took("a", kPictureTime + 1, true);
-  EXPECT_FALSE(slow.contains("a"));  // that may have been what it prepares
+  EXPECT_FALSE(slow.contains("a"));  // the first picture may have been slow because the method prepared something
   slow.took("a", kPictureTime, true);
   slow.took("a", kPictureTime + 1, true);
   EXPECT_FALSE(slow.contains("a"));
@@ -60,7 +61,7 @@ TEST(SlowMethods, AreThoseThatAreSlowAtTheLowestQuality) {
   EXPECT_FALSE(slow.contains("b"));
   slow.took_final("a", 2000);
   EXPECT_TRUE(slow.contains("a"));
-  slow.took_final("a", 20);  // it was the machine that was slow
+  slow.took_final("a", 20);  // the machine was slow, not the method
   EXPECT_FALSE(slow.contains("a"));
 }
 

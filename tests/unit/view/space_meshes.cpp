@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as the 3D view draws them: coarser where there are too many triangles, defects in colours.
+// Tests the meshes that the 3D view draws: coarser if there are too many triangles, with defects in colours.
 #include "app/view/space_meshes.hpp"
 
 #include "tests/unit/view/space_reading.hpp"
@@ -41,7 +41,8 @@ TEST(SpaceMeshes, AreDrawnAsTheyAreUpToALimit) {
 }
 
 TEST(SpaceMeshes, AreCoarsenedOnAGrid) {
-  // 64 cells a side: 8192 triangles. On a grid of 32 cells positions 0 and 1, 2 and 3, … are one; the last is alone.
+  // 64 cells along a side: 8192 triangles. On a grid of 32 cells, positions 0 and 1, 2 and 3, … are merged; the last is
+  // alone.
   const ShownTriangles shown = Sheet(64).shown(8191);
   EXPECT_EQ(shown.triangles.size(), 2U * 32 * 32);
   EXPECT_EQ(shown.positions.size(), 33U * 33);
@@ -53,7 +54,7 @@ TEST(SpaceMeshes, AreCoarsenedOnAGrid) {
   double area = 0;
   for (const auto& [a, b, c] : shown.triangles) {
     const glm::vec3 u = shown.positions[b] - shown.positions[a], v = shown.positions[c] - shown.positions[a];
-    area += 0.5 * (u.z * v.x - u.x * v.z);  // seen from above
+    area += 0.5 * (u.z * v.x - u.x * v.z);  // as seen from above
   }
   EXPECT_EQ(area, 64.0 * 64);
   EXPECT_LE(Sheet(64).shown(10).triangles.size(), 10U);
@@ -66,7 +67,7 @@ TEST(SpaceMeshes, MessageHasTheScenesNumbers) {
   EXPECT_EQ(answer.header["triangles"], scene.soup.triangles.size());
   EXPECT_EQ(answer.floats("positions").size(), 3 * floats.positions.size());
   EXPECT_EQ(answer.floats("positions")[5], floats.positions[1].z);
-  EXPECT_EQ(answer.indices("triangles")[3 * 2 + 1], scene.soup.triangles[2][1]);  // with its winding
+  EXPECT_EQ(answer.indices("triangles")[3 * 2 + 1], scene.soup.triangles[2][1]);  // also checks the winding
   EXPECT_EQ(answer.indices("objects"), scene.soup.object);
   EXPECT_EQ(answer.header["objects"][1]["name"], "block");
 }
@@ -81,7 +82,7 @@ TEST(SpaceMeshes, DefectsAreThoseOfEachObject) {
     return 0;
   };
   const SpaceAnswer sound(defects_message(scene, origin));
-  EXPECT_EQ(count_of(sound, "boundary edges"), 4);  // the floor's
+  EXPECT_EQ(count_of(sound, "boundary edges"), 4);  // those of the floor
   EXPECT_EQ(sound.floats("lines").size(), 4U * 6);
   EXPECT_EQ(sound.indices("lineColors"), std::vector<std::uint32_t>(4, 0xff0000));
   EXPECT_EQ(count_of(sound, "inconsistent windings"), 0);

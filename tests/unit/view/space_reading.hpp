@@ -15,7 +15,7 @@
 
 namespace penumbra::app {
 
-/// A message of the 3D view, read as its page describes it (docs/view.md).
+/// A message of the 3D view, decoded as docs/view.md describes it.
 struct SpaceAnswer {
   nlohmann::json header;
   std::map<std::string, std::vector<char>> bytes;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Silhouettes, shadow volumes and wedges of the 3D view, against places found by hand and against the library's own.
+// Tests silhouettes, shadow volumes and wedges of the 3D view, compared with places found by hand and with the
+// library's results.
 #include "app/view/space_shadows.hpp"
 
 #include "app/view/space_view.hpp"
@@ -34,7 +35,8 @@ TEST(SpaceShadows, PointsOfTheLightAreOnIt) {
   const auto rectangle = made_light(scenes::Rectangle{{0, 6, 0}, {2, 0, 0}, {0, 0, 1}});
   expect_point(light_point(rectangle, {0.5, -1}), {1, 6, -1});
   const auto disk = made_light(scenes::Disk{{0, 6, 0}, {0, -1, 0}, 2});
-  EXPECT_NEAR(glm::length(light_point(disk, {1, 1}) - glm::dvec3(0, 6, 0)), 2, 1e-6);  // not in the square's corner
+  EXPECT_NEAR(glm::length(light_point(disk, {1, 1}) - glm::dvec3(0, 6, 0)), 2,
+              1e-6);  // on the rim, not in the corner of the square
   const auto sphere = made_light(scenes::Sphere{{0, 6, 0}, 2});
   expect_point(light_point(sphere, {0.5, 0}), {1, 6, 0});
   // A triangle: centroid (0, 6, 1); a corner of its bounding rectangle is pulled back to its outline.
@@ -52,7 +54,8 @@ TEST(SpaceShadows, PointsOfTheLightAreOnIt) {
 TEST(SpaceShadows, SidesOfVolumesReachTheBox) {
   const volumes::Box box{{-8, 0, -8}, {8, 4, 8}};
   const glm::dvec3 l(0, 4, 0);
-  const Edge edge = {glm::dvec3(1, 2, -1), {1, 2, 1}};  // half way: on the floor twice as far, twice as long
+  const Edge edge = {glm::dvec3(1, 2, -1),
+                     {1, 2, 1}};  // half way down from the light: on the floor it is twice as far and twice as long
   std::vector<glm::dvec3> side = volume_side(edge, l, box);
   ASSERT_EQ(side.size(), 4U);
   for (const glm::dvec3& wanted : {edge[0], edge[1], glm::dvec3(2, 0, 2), glm::dvec3(2, 0, -2)}) {
@@ -64,14 +67,14 @@ TEST(SpaceShadows, SidesOfVolumesReachTheBox) {
     const double far = (4 - height) / 2;
     for (const glm::dvec3& end : *line) expect_point(glm::dvec3(end.x, end.y, std::abs(end.z)), {far, height, far});
   }
-  EXPECT_FALSE(side_at(edge, l, box, 3));  // above it
+  EXPECT_FALSE(side_at(edge, l, box, 3));  // the height is above the edge
   const auto on_it = side_at(edge, l, box, 2);
   ASSERT_TRUE(on_it);
   EXPECT_EQ(glm::length((*on_it)[0] - (*on_it)[1]), 2);
   const auto cut = side_at(edge, l, {{-8, 0, -1}, {8, 4, 8}}, 0);
   ASSERT_TRUE(cut);
-  EXPECT_NEAR(glm::length((*cut)[0] - (*cut)[1]), 3, 1e-12);                   // from z −1 to 2
-  EXPECT_TRUE(volume_side({glm::dvec3(0, 3, 0), {0, 2, 0}}, l, box).empty());  // it points at the light
+  EXPECT_NEAR(glm::length((*cut)[0] - (*cut)[1]), 3, 1e-12);                   // from z = −1 to 2
+  EXPECT_TRUE(volume_side({glm::dvec3(0, 3, 0), {0, 2, 0}}, l, box).empty());  // the edge points at the light
 }
 
 struct Built {
@@ -108,7 +111,8 @@ TEST(SpaceShadows, MessageHasTheLibrarysOwnSilhouettesAndWedges) {
         const volumes::WedgeBody body = volumes::wedge_body(wedges.wedges[bodies[i]], box);
         EXPECT_EQ(bodies[i + 1], body.triangles.size());
         EXPECT_EQ(bodies[i + 2], body.edges.size());
-        const std::size_t corners = body.triangles.empty() ? 0 : 2 + body.triangles.size() / 2;  // V − 3 T / 2 + T = 2
+        const std::size_t corners =
+            body.triangles.empty() ? 0 : 2 + body.triangles.size() / 2;  // Euler: V − 3 T / 2 + T = 2
         EXPECT_EQ(body.corners.size(), corners);
         triangles += bodies[i + 1];
         lines += bodies[i + 2];
@@ -124,20 +128,20 @@ TEST(SpaceShadows, MessageHasTheLibrarysOwnSilhouettesAndWedges) {
 
 TEST(SpaceShadows, SilhouettesAreThoseOfThePoint) {
   const Built built;
-  // The block's top has four silhouettes as seen from above it, the floor its own four. The block's sides are seen from
-  // beyond them alone.
+  // Seen from above, the block's top has four silhouettes and the floor has its own four. The block's sides are
+  // silhouettes only for a point beyond them.
   const SpaceAnswer above = built.answer({});
   EXPECT_EQ(above.header["silhouettes"], 8);
   const std::vector<std::int32_t> counts = above.numbers<std::int32_t>("multiplicities");
   EXPECT_EQ(std::ranges::count_if(counts, [](int k) { return std::abs(k) == 2; }), 4);
   EXPECT_EQ(std::ranges::count_if(counts, [](int k) { return std::abs(k) == 1; }), 4);
   EXPECT_EQ(above.header["floor"], 0);
-  // The top's edges, 4 below the light, are at 0.5 · 6 / 4 on the floor, 6 below it.
+  // The top's edges at ±0.5, 4 below the light, are cast to ±0.5 · 6 / 4 on the floor, 6 below it.
   const std::vector<float> lines = above.floats("shadowLines");
   ASSERT_EQ(lines.size(), 8U * 6);
   int of_block = 0;
   for (std::size_t i = 0; i < lines.size(); i += 3) {
-    EXPECT_EQ(lines[i + 1], -1);  // the origin is at height 1
+    EXPECT_EQ(lines[i + 1], -1);  // heights are relative to the origin, which is at height 1
     of_block +=
         std::abs(std::abs(lines[i]) - 0.75F) < 1e-6F && std::abs(std::abs(lines[i + 2]) - 0.75F) < 1e-6F ? 1 : 0;
   }
@@ -153,7 +157,7 @@ TEST(SpaceShadows, WedgesOfAPointAreThoseThatContainIt) {
   const Built built;
   SpaceShadows request;
   request.wedges.construction = "tight";
-  // The edge of the top at x 0.5 is cast by the light's sides to x 0.25 and 1.25 on the floor.
+  // The light's sides cast the top's edge at x = 0.5 to x = 0.25 and x = 1.25 on the floor.
   for (const auto& [x, count] : {std::pair{0.2, 0}, std::pair{0.3, 1}, std::pair{1.2, 1}, std::pair{1.3, 0}}) {
     request.point = glm::dvec3(x, 0, 0) - built.floats.origin;
     EXPECT_EQ(built.answer(request).header["inside"]["count"], count) << x;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets for tev, byte by byte, as its protocol has them.
+// Tests packets for tev byte by byte against its protocol.
 #include "base/error.hpp"
 #include "network/tev_client.hpp"
 
@@ -24,8 +24,8 @@ TEST(TevPackets, OnePixel) {
   EXPECT_EQ(packets[1],
             bytes_of({72, 0, 0,    0,    6, 0, 'a', 0,   2, 0, 0, 0, 'R', 0, 'V', 0,  //
                       0,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 1,   0, 0,   0,  // x, y, width, height
-                      0,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 0,   0, 0,   0,  // where channels begin
-                      1,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 0,   0, 0,   0,  // how far values are apart
+                      0,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 0,   0, 0,   0,  // offsets of the channels
+                      1,  0, 0,    0,    0, 0, 0,   0,   1, 0, 0, 0, 0,   0, 0,   0,  // strides of the channels
                       0,  0, 0x80, 0x3f, 0, 0, 0,   0xc0}));
 }
 
@@ -37,7 +37,7 @@ TEST(TevPackets, LargePicturesComeInStripes) {
   ASSERT_GT(packets.size(), 2U);
   std::size_t row = 0;
   for (std::size_t i = 1; i < packets.size(); ++i) {
-    std::int32_t place[4];  // behind length, type, focus, name, count and the channel's name
+    std::int32_t place[4];  // after length, type, focus, name, count and the channel's name
     std::memcpy(place, packets[i].data() + 4 + 1 + 1 + 6 + 4 + 2, sizeof(place));
     EXPECT_EQ(place[0], 0);
     EXPECT_EQ(place[1], static_cast<std::int32_t>(row));

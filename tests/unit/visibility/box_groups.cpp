@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the parts that trees are built of: groups of boxes that lie together, and halves of the last dozens.
+// Tests the parts from which trees are built: groups of neighbouring boxes, and halves of the last few dozen boxes.
 
 #include "visibility/tree/box_groups.hpp"
 
@@ -15,7 +15,7 @@
 namespace penumbra::visibility {
 namespace {
 
-/// Small cubes at random places of a lattice, so that some are at one place.
+/// Small cubes at random places of a lattice, some of them at the same place.
 std::vector<NumberedBox> cubes(std::uint32_t count, int cells) {
   std::mt19937 random(count);
   std::uniform_int_distribution<int> place(0, cells);
@@ -62,13 +62,13 @@ TEST(BoxGroups, HoldEveryBoxOnceInGroupsThatFollowOneAnother) {
 }
 
 TEST(BoxGroups, AreCompactAndNotMuchSmallerThanTheyMayBe) {
-  const std::vector<NumberedBox> boxes = cubes(40000, 200);  // one in 200 places
+  const std::vector<NumberedBox> boxes = cubes(40000, 200);  // one cube per 200 places
   const GroupedBoxes made = grouped(boxes);
   EXPECT_LT(made.groups.size(), 40000 / 5U);
   for (const BoxGroup& group : made.groups) {
     const glm::vec3 size = group.upper - group.lower;
-    // A group has at most sixteen boxes of a cell that is halved above that: 8 · 16 · 200 places are 30 a side; a
-    // cell's halves may be four times as long as another side, and chance is on top.
+    // A group has at most sixteen boxes, from a cell that is halved if it has more: 8 · 16 · 200 places are a cube of
+    // side 30. A cell may be four times as long as wide, and chance adds some.
     EXPECT_LT(std::max({size.x, size.y, size.z}), 110);
   }
 }

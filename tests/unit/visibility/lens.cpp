@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kAcross = 40;  // pixels of a picture, along both axes
 
-/// All points of one pixel, of a lens of radius 1.
+/// Returns all points of one pixel on a lens of radius 1.
 std::vector<glm::dvec2> points_of(std::uint32_t pixel_x, std::uint32_t pixel_y, std::uint32_t side,
                                   std::uint32_t moments) {
   std::vector<glm::dvec2> points;
@@ -29,18 +29,19 @@ std::vector<glm::dvec2> points_of(std::uint32_t pixel_x, std::uint32_t pixel_y, 
   return points;
 }
 
-/// The square's point that the disk's comes from, by the areas of rings and sectors (Shirley and Chiu's four wedges).
+/// Returns the point of the square that Shirley and Chiu's map takes to this point of the disk, by the areas of rings
+/// and sectors (four wedges).
 glm::dvec2 on_square(const glm::dvec2& disk) {
   const double radius = glm::length(disk);
   double angle = std::atan2(disk.y, disk.x);
   const auto quarter = static_cast<int>(std::floor((angle + std::numbers::pi / 4) / (std::numbers::pi / 2)));
-  angle -= quarter * std::numbers::pi / 2;  // within an eighth of a turn of the wedge's middle
+  angle -= quarter * std::numbers::pi / 2;  // within an eighth of a turn of the middle of its wedge
   const double along = radius, beside = radius * angle * 4 / std::numbers::pi;
   const std::array<glm::dvec2, 4> turned{{{along, beside}, {-beside, along}, {-along, -beside}, {beside, -along}}};
   return 0.5 + 0.5 * turned[static_cast<std::size_t>((quarter + 4) % 4)];
 }
 
-/// Each of a pixel's points is in a cell of its own of side × side · moments, in a column and in a row of its own.
+/// Each of a pixel's side × side · moments points is alone in its cell, in its column and in its row.
 TEST(Lens, PointsOfAPixelAreEvenlySpread) {
   const std::vector<std::array<std::uint32_t, 4>> layouts = {
       // side, moments, columns, rows
@@ -64,8 +65,8 @@ TEST(Lens, PointsOfAPixelAreEvenlySpread) {
   }
 }
 
-/// The same place in a pixel looks through the whole lens from pixel to pixel: within and beyond half the area, on both
-/// sides of it along both axes, each with a half, to four standard errors.
+/// For a fixed place in the pixel, the points of all pixels spread over the whole lens: half of them are within half
+/// the area, and half on each side of both axes, to four standard errors.
 TEST(Lens, PointsOfAPlaceInAPixelAreAnywhere) {
   const Lens lens{.radius = 0.5, .focus_distance = 1, .side = 4, .moment = 1, .moments = 4};
   for (std::uint32_t place = 0; place < 16; ++place) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The table of what each kind of light does: area, points and form factor of a made light agree with the region that
-// the kind's traits say, by numbers that no code of the product computes.
+// Tests the table of the kinds of light: area, points and form factor of a light agree with the region given by the
+// kind's traits, by numbers that no code of the product computes.
 #include "visibility/light_samples.hpp"
 #include "visibility/lights/unshadowed_light.hpp"
 
@@ -22,7 +22,7 @@ namespace {
 
 const glm::vec3 kReceiver(0.25f, 0.125f, -0.5f);
 
-/// One of each kind, in the order of the table; all shine down. (Domes, which no rim bounds: unit/dome_samples.cpp.)
+/// One light of each kind, in the order of the table; all shine down. (Domes have no rim: see unit/dome_samples.cpp.)
 const std::array<scenes::LightShape, 6> kShapes{
     scenes::Rectangle{{0, 3, 0}, {0.125, 0, -0.5}, {0.75, 0, 0.25}},
     scenes::Disk{{0.5, 3, 0}, {0, -1, 0}, 0.5},
@@ -48,7 +48,7 @@ glm::dvec3 doubled_area(const std::vector<glm::dvec3>& loop) {
   return sum;
 }
 
-/// Returns the bounds of the light as p sees it, with `sides` sides where it is round.
+/// Returns the outline of the light as p sees it, with `sides` sides if it is round.
 std::vector<glm::dvec3> rim_of(const Light& light, const glm::vec3& p, int sides) {
   if (!is_round(light.kind)) return {light.outline.begin(), light.outline.end()};
   const auto [center, u, v] = light_frame_from(light, p);
@@ -66,14 +66,14 @@ std::vector<glm::vec3> points_of(const Light& light, const glm::vec3& p) {
   return points;
 }
 
-/// Polygons with n sides in a circle have the share sin(x) / x of its area, x = 2π/n.
+/// A polygon with n sides inscribed in a circle has the share sin(x) / x of its area, x = 2π/n.
 TEST(LightKindsMade, AreaIsTheLimitOfOutlines) {
   constexpr int kSides = 64;
   constexpr double kStep = 2 * std::numbers::pi / kSides;
   for (std::size_t kind = 0; kind < kShapes.size(); ++kind) {
     const Light light = light_of_kind(kind, 64);
     EXPECT_EQ(light.kind, scenes::kLightTraits[kind].kind);
-    const glm::vec3 far(0, -1e6f, 0);  // from there a sphere is the disk of its radius
+    const glm::vec3 far(0, -1e6f, 0);  // seen from there a sphere is a disk of its radius
     const double share = is_round(light.kind) ? std::sin(kStep) / kStep : 1;
     const double area = glm::length(doubled_area(rim_of(light, far, kSides))) / 2 / share;
     EXPECT_NEAR(area, light.area, 1e-6 * light.area) << name_of(light.kind);
@@ -97,13 +97,13 @@ TEST(LightKindsMade, SamplesLieInTheRegion) {
         const glm::dvec3 edge = rim[(j + 1) % rim.size()] - rim[j];
         EXPECT_GE(glm::dot(glm::cross(edge, at - rim[j]), normal), -2e-5 * glm::length(edge)) << name_of(light.kind);
       }
-      if (is_polygon(light.kind)) continue;  // its coordinates are those of its bounding rectangle
+      if (is_polygon(light.kind)) continue;  // its coordinates are relative to its bounding rectangle
       EXPECT_LT(glm::distance(at, center + light.coordinates[i].x * u + light.coordinates[i].y * v), 1e-6);
     }
   }
 }
 
-/// 1/π ∫ cos θp cos θl / d² over the light samples, which have equal shares of what p sees.
+/// The form factor is 1/π ∫ cos θp cos θl / d² over the light samples, which have equal shares of the part that p sees.
 TEST(LightKindsMade, FormFactorIsTheSumOverSamples) {
   const glm::vec3 n(0, 1, 0);
   for (std::size_t kind = 0; kind < kShapes.size(); ++kind) {
@@ -125,7 +125,7 @@ TEST(LightKindsMade, FormFactorIsTheSumOverSamples) {
   }
 }
 
-/// An element whose plane cuts each light: by a rectangle's corner, a polygon's, or a rim.
+/// The element's plane cuts each light at a corner of its outline, or at its rim.
 TEST(LightKindsMade, HorizonThatCutsTheLightIsSeen) {
   for (std::size_t kind = 0; kind < kShapes.size(); ++kind) {
     const Light light = light_of_kind(kind, 64);

@@ -13,7 +13,8 @@
 namespace penumbra {
 namespace {
 
-const glm::dvec3 kCenter(-2.6, 4.2, 2.4), kU(0.5208, 0, 0.6076), kV(-0.4416, -0.5498, 0.3784);  // tilted: off its plane
+const glm::dvec3 kCenter(-2.6, 4.2, 2.4), kU(0.5208, 0, 0.6076),
+    kV(-0.4416, -0.5498, 0.3784);  // tilted: in float the light's points are off its plane
 
 visibility::LightTouch touch_of(const scenes::AreaLight& light, const std::vector<tests::Corners>& occluder) {
   scenes::Scene scene;
@@ -28,7 +29,7 @@ visibility::LightTouch touch_of(const scenes::AreaLight& light, const std::vecto
 TEST(LightTouch, NothingNearTouchesNothing) {
   const scenes::AreaLight light = tests::rectangle_light(kCenter, kU, kV);
   EXPECT_TRUE(touch_of(light, tests::quad({0, 1, 0}, {1, 0, 0}, {0, 0, -1})).empty());
-  // Quads behind the light and in front of it, by a quarter of the normal.
+  // Quads behind the light and in front of it, a quarter of the normal away.
   const glm::dvec3 n = glm::cross(kU, kV);
   EXPECT_TRUE(touch_of(light, tests::quad(kCenter - 0.25 * n, kU, kV)).empty());
   EXPECT_TRUE(touch_of(light, tests::quad(kCenter + 0.25 * n, kU, kV)).empty());
@@ -37,12 +38,12 @@ TEST(LightTouch, NothingNearTouchesNothing) {
 TEST(LightTouch, PanelOfATiltedLightTouchesWhatItCovers) {
   const scenes::AreaLight light = tests::rectangle_light(kCenter, kU, kV);
   EXPECT_EQ(touch_of(light, tests::quad(kCenter, 2.0 * kU, 2.0 * kV)).samples.size(), 256U);
-  // A quad over the light's left half touches eight columns, and those at its border.
+  // A quad over the light's left half touches eight columns, and samples at its border.
   const visibility::LightTouch half = touch_of(light, tests::quad(kCenter - kU, kU, 2.0 * kV));
   EXPECT_GE(half.samples.size(), 120U);
   EXPECT_LE(half.samples.size(), 136U);
   for (const std::uint32_t sample : half.samples) EXPECT_LE(sample % 16, 8U);
-  // A quad beside the light touches no sample, but flat segments to samples may meet it.
+  // A quad next to the light touches no sample, but flat segments to samples may meet it.
   const visibility::LightTouch beside = touch_of(light, tests::quad(kCenter + 2.5 * kU, kU, kV));
   EXPECT_TRUE(beside.samples.empty());
   EXPECT_TRUE(beside.any_near);
@@ -63,7 +64,7 @@ TEST(LightTouch, WhatPassesThroughTouchesWhereItDoes) {
   const visibility::LightTouch touch = touch_of(scene.lights[0], tests::quad(at, 3.0 * kV, n));
   EXPECT_TRUE(touch.any_near);
   EXPECT_NE(std::ranges::find(touch.samples, kSample), touch.samples.end());
-  EXPECT_LE(touch.samples.size(), 4U);  // rows are shifted by other shares of a cell
+  EXPECT_LE(touch.samples.size(), 4U);  // each row is shifted by another share of a cell
 }
 
 }  // namespace

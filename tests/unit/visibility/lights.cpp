@@ -102,7 +102,7 @@ TEST(Lights, DiskSamplesKeepAreas) {
       const glm::dvec3 d = glm::dvec3(light.points[j]) - glm::dvec3(1, 2, 3);
       EXPECT_LE(glm::length(d), 2 + 1e-6);
       EXPECT_NEAR(glm::dot(d, glm::normalize(normal)), 0, 1e-5);
-      inner += glm::length(light.coordinates[j]) < std::sqrt(0.5) ? 1 : 0;  // half of the area
+      inner += glm::length(light.coordinates[j]) < std::sqrt(0.5) ? 1 : 0;  // the circle that contains half of the area
     }
     EXPECT_NEAR(static_cast<double>(inner) / 4096, 0.5, 4.0 / 64);
     const glm::vec3 frame = glm::cross(light.center_u - light.center, light.center_v - light.center);
@@ -110,8 +110,8 @@ TEST(Lights, DiskSamplesKeepAreas) {
   }
 }
 
-/// Four neighbours of a grid are the corners of 1 / 4096 of the disk's area, wherever they are. Chords for arcs of dφ
-/// make that less by dφ² / 6; a quarter of the radius from the centre dφ is 0.1.
+/// Four neighbours in the grid are the corners of 1 / 4096 of the disk's area, anywhere on the disk. Replacing arcs of
+/// dφ by chords makes that smaller by dφ² / 6; at a quarter of the radius dφ is 0.1.
 TEST(Lights, DiskSamplesAreSpreadEvenly) {
   const Light light = light_of(scenes::Disk{{1, 2, 3}, {0, -1, 0}, 2}, {4096, 0, 0, SamplePattern::grid, 0});
   const auto at = [&](std::size_t row, std::size_t column) { return light.coordinates[64 * row + column]; };
@@ -145,8 +145,8 @@ TEST(Lights, EllipseSamplesAreADisksInTheEllipsesFrame) {
   EXPECT_FALSE(in_front_of_light(light, glm::vec3(shape.center - front)));
 }
 
-/// A corner in the middle of a side is off it by what rounding moved it: a plane through that side's three corners has
-/// any direction.
+/// A corner in the middle of a side is off that side by its rounding error: a plane through the side's three corners
+/// could have any direction.
 TEST(Lights, RoundingChoosesNoPolygonsPlane) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> real(-1, 1);
@@ -159,9 +159,10 @@ TEST(Lights, RoundingChoosesNoPolygonsPlane) {
         light_of(scenes::Polygon{{a, 0.5 * a + 0.5 * b, b, c + size * u + size * v, c - size * u + size * v}});
     const glm::dvec3 stored(light.center),
         normal = glm::cross(glm::dvec3(light.center_u) - stored, glm::dvec3(light.center_v) - stored);
-    // The light's corners are off by √3 2⁻²⁵, and its triangles are over half of `size` high.
+    // The light's corners are off by √3 2⁻²⁵, and its triangles are more than half of `size` high.
     EXPECT_GT(glm::dot(glm::normalize(normal), n), std::cos(std::min(0.3, 8 * 0x1p-25 * std::sqrt(3) / size))) << i;
-    // The first three that are well apart: a judge who asks for three that are not exactly on a line finds the same.
+    // The first three corners that are well apart: a test that looks for three corners not exactly on a line finds the
+    // same.
     const Light plain = light_of(scenes::Polygon{{a, b, c + size * u + size * v, c - size * u + size * v}});
     EXPECT_EQ(plain.center, plain.outline[0]);
     EXPECT_EQ(plain.center_u, plain.outline[1]);
@@ -186,7 +187,7 @@ TEST(Lights, PolygonSamplesKeepAreasAndStayInside) {
   EXPECT_NEAR(static_cast<double>(left) / 4096, 0.5, 0.005);
 }
 
-/// The part of a sphere that p sees is the cone of angle asin(r / d), and the disk's rim touches the sphere and that
+/// The part of a sphere that p sees lies in the cone of angle asin(r / d); the disk's rim touches the sphere and that
 /// cone.
 TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
   const double r = 0.5;
@@ -225,7 +226,7 @@ TEST(Lights, SphereShowsEachPointTheDiskThatItsTangentsBound) {
   }
 }
 
-/// Cosines are 0.8 and 0.6 of the cone's ends and 0.65 of p's direction, a quarter of the distance in from the rim.
+/// The cosines are 0.8 and 0.6 at the cone's ends and 0.65 in p's direction: a quarter of the way in from the dark end.
 TEST(Lights, ConesFallAsTheirLampsSay) {
   const double inner = glm::degrees(std::acos(0.8)), outer = glm::degrees(std::acos(0.6));
   const glm::vec3 p(static_cast<float>(std::sqrt(1 - 0.65 * 0.65)), -0.65F, 0), up(0, 1, 0);
@@ -238,8 +239,8 @@ TEST(Lights, ConesFallAsTheirLampsSay) {
   EXPECT_EQ(spot_share(light, {1, -0.7F, 0}, up), 0);
 }
 
-/// Returns the light that p gets from a disk that faces it, over what it would get if all the light came from the
-/// disk's middle: over a fine grid.
+/// Returns, by summing over a fine grid, the light that p gets from a disk that faces it, divided by the light that p
+/// would get if all of it came from the disk's middle.
 double share_by_grid(const scenes::Sphere& lamp, const glm::dvec3& p, const glm::dvec3& n) {
   const glm::dvec3 axis = lamp.cone->direction, middle = lamp.center - p, away = glm::normalize(middle);
   const glm::dvec3 u = glm::normalize(glm::cross(away, glm::dvec3(0.3, 0.5, 0.7))), v = glm::cross(away, u);
@@ -279,11 +280,11 @@ TEST(Lights, ConesOfWideLampsAreThoseOfTheirDisks) {
   EXPECT_GT(between, 9);
 }
 
-/// The share of samples within a part of the disk is the part's share of its area.
+/// A part of the disk holds a share of the samples equal to the part's share of the area.
 TEST(Lights, SphereSamplesKeepAreasOfTheDisk) {
   const Light light = light_of(scenes::Sphere{{0, 0, 0}, 1}, {4096, 0, 0, SamplePattern::sobol, 4});
   std::vector<glm::vec3> points(4096);
-  light_points_for(light, {0, -1.25f, 0}, points.data());  // the disk at −0.8, of radius 0.6
+  light_points_for(light, {0, -1.25f, 0}, points.data());  // sees the disk at y = −0.8, of radius 0.6
   std::size_t inner = 0, right = 0;
   for (const glm::vec3& l : points) {
     EXPECT_NEAR(l.y, -0.8, 1e-6);
@@ -302,11 +303,12 @@ TEST(Lights, InsideASphereNothingShines) {
     light_points_for(light, p, points.data());
     for (const glm::vec3& l : points) EXPECT_EQ(l, light.center);
   }
-  // 0.3² + 0.4² is 0.25 except for what rounds 0.3 and 0.4 to floats: exactly on neither side is certain in double.
+  // 0.3² + 0.4² would be 0.25, but 0.3 and 0.4 are rounded to floats: the point is so near the sphere that double
+  // cannot decide.
   EXPECT_TRUE(in_front_of_light(light, {1.0f + 0x1.333334p-2f, 2.0f + 0x1.99999ap-2f, 3}));
   EXPECT_TRUE(in_front_of_light(light, {std::nextafter(1.5f, 2.0f), 2, 3}));
   EXPECT_FALSE(in_front_of_light(light, {std::nextafter(1.5f, 1.0f), 2, 3}));
-  // The radius is a double: nearer to it than floats are to one another.
+  // The radius is a double: it can be nearer to the point's distance than neighbouring floats are to one another.
   for (const double off : {0x1p-34, 0x1p-48, 0x1p-52}) {
     EXPECT_FALSE(in_front_of_light(light_of(scenes::Sphere{{0, 0, 0}, 1 + off}), {1, 0, 0})) << off;
     EXPECT_TRUE(in_front_of_light(light_of(scenes::Sphere{{0, 0, 0}, 1 - off}), {1, 0, 0})) << off;
@@ -330,7 +332,7 @@ TEST(Lights, SunSamplesAreDirectionsOverItsDisk) {
     for (std::size_t j = 0; j < light.points.size(); ++j) {
       const glm::dvec3 d = light.points[j];
       const double along = -glm::dot(d, travels);
-      // Rounded once: half an ulp of each coordinate, which are no longer than the direction.
+      // Each coordinate is rounded once, by at most half an ulp, and is no longer than the direction.
       const double off = std::sqrt(3.0) * 0x1p-24 * glm::length(d);
       EXPECT_NEAR(along, 1, off);
       EXPECT_LE(glm::length(d + along * travels), tangent + 2 * off);

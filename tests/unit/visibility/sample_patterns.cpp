@@ -72,7 +72,7 @@ TEST(SamplePatterns, RowsShiftEachRowByItsOwnFraction) {
     const double shift = row_shift_of(row);
     EXPECT_GT(shift, -0.5);
     EXPECT_LT(shift, 0.5);
-    // A multiple of the golden ratio's fraction, which is rounded to 2⁻¹⁶: half of that a row.
+    // A multiple of the golden ratio's fraction, rounded to 2⁻¹⁶: half of that is lost for each row.
     const double off = shift - row * (std::numbers::phi - 1);
     EXPECT_LE(std::abs(off - std::round(off)), row * 0x1p-17);
     EXPECT_EQ(shift, static_cast<double>(static_cast<float>(shift)));
@@ -83,14 +83,14 @@ TEST(SamplePatterns, RowsShiftEachRowByItsOwnFraction) {
   }
   EXPECT_EQ(shifts.size(), 64u);
   EXPECT_EQ(row_shift_of(0), 0.0) << "a single sample is the light's centre";
-  double gap = 0, previous = -0.5;  // sorted by the set: the golden ratio leaves no gap above 3 / 64 of a cell
+  double gap = 0, previous = -0.5;  // the set is sorted: the golden ratio leaves no gap above 3 / 64 of a cell
   for (const double shift : shifts) gap = std::max(gap, shift - std::exchange(previous, shift));
   EXPECT_LT(gap, 3.0 / 64);
 }
 
 TEST(SamplePatterns, SobolIsANetInBase2WhateverTheSeed) {
-  // A (0, m, 2)-net: every elementary interval of 2^a × 2^(m − a) cells holds exactly one of the 2^m points. Owen
-  // scrambling keeps it.
+  // A (0, m, 2)-net: each of 2^a × 2^(m − a) equal cells holds exactly one of the 2^m points. Owen scrambling preserves
+  // this.
   for (const std::uint32_t seed : {0u, 1u, 77u, 0xffffffffu}) {
     for (std::uint32_t m = 0; m <= 12; ++m) {
       const auto points = samples(1u << m, SamplePattern::sobol, seed);
@@ -104,7 +104,8 @@ TEST(SamplePatterns, SobolIsANetInBase2WhateverTheSeed) {
 TEST(SamplePatterns, JitteredHasOnePointInEachStratum) {
   EXPECT_EQ(cells_with_one(samples(256, SamplePattern::jittered, 5), 16, 16), 256u);
   EXPECT_EQ(cells_with_one(unit_square_samples({0, 3, 7, SamplePattern::jittered, 5}), 7, 3), 21u);
-  const auto prime = samples(7, SamplePattern::jittered, 5);  // 3 rows of 2, 2, 3: as tall as their share
+  const auto prime =
+      samples(7, SamplePattern::jittered, 5);  // 3 rows of 2, 2 and 3 points, with heights in that proportion
   for (std::size_t i = 0; i < 7; ++i) {
     const double below = i < 2 ? 0 : i < 4 ? 2 : 4, above = i < 2 ? 2 : i < 4 ? 4 : 7;
     EXPECT_GE(prime[i].y, below / 7);
@@ -126,8 +127,8 @@ TEST(SamplePatterns, JitteredFillsItsStrata) {
   }
 }
 
-/// 8 x 8 squares: 32 columns and rows of eight points, one point in each of 16 x 16 cells, and the four of a square are
-/// the same four turned by a right angle.
+/// 8 x 8 squares of four points: 32 columns and 32 rows of eight points each, one point in each of 16 x 16 cells; the
+/// four points of a square are turned into each other by right angles.
 TEST(SamplePatterns, TurnedSquaresStandInThirtyTwoColumns) {
   const auto points = samples(256, SamplePattern::rgss);
   EXPECT_EQ(cells_with_one(points, 16, 16), 256u);

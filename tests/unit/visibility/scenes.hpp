@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// Small scenes for tests of visibility and of its oracles: the self-test's own.
+// Small scenes for tests of visibility and of its oracles; they are those of the self-test.
 
 #include "selftest/small_scenes.hpp"
 

@@ -7,7 +7,7 @@
 
 namespace penumbra::tests {
 
-/// Makes so many small triangles anywhere around the origin, over a tilted floor that receives their shadows. No
+/// Makes `triangles` small triangles anywhere around the origin, over a tilted floor that receives their shadows. No
 /// triangle is parallel to an axis.
 inline scenes::Scene soup_over_tilted_floor(std::mt19937& random, int triangles) {
   std::uniform_real_distribution<double> real(-1, 1);

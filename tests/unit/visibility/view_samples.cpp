@@ -24,11 +24,11 @@ TEST(Camera, RaysGoThroughPixelCentres) {
   EXPECT_EQ(camera.eye, glm::dvec3(0, 0, 7));
   EXPECT_NEAR(camera.tan_half_fov, 1, 1e-15);
   const glm::dvec3 first = camera.direction(0, 0), last = camera.direction(3, 1);
-  EXPECT_NEAR(glm::length(first - glm::dvec3(-1.5, 0.5, -1)), 0, 1e-15);  // t is the distance along the view axis
+  EXPECT_NEAR(glm::length(first - glm::dvec3(-1.5, 0.5, -1)), 0, 1e-15);  // t is measured along the view axis
   EXPECT_NEAR(glm::length(last - glm::dvec3(1.5, -0.5, -1)), 0, 1e-15);
 }
 
-/// The picture's middle moves by shares of its height; what is parallel to the picture keeps its shape and depth.
+/// The picture's middle moves by shares of its height; objects parallel to the picture keep their shape and depth.
 TEST(Camera, AShiftedLensMovesThePictureAndTurnsNothing) {
   scenes::Camera shifted = tests::camera({0, 0, 7}, {0, 0, 0}, 90);
   shifted.shift = {0.25, -0.5};
@@ -90,8 +90,8 @@ TEST(ViewSamples, BackgroundIsEmpty) {
 }
 
 TEST(ViewSamples, EqualDepthsGoToTheSmallerVertices) {
-  // Two triangles of one plane, both over the pixel: the one with the lexicographically smaller sorted vertices wins,
-  // whatever comes first.
+  // Two triangles in one plane cover the pixel: the one with the lexicographically smaller sorted vertices wins,
+  // whatever their order.
   const tests::Corners small = {glm::dvec3(-3, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 2, 0)};
   const tests::Corners large = {glm::dvec3(-1, -1, 0), glm::dvec3(1, -1, 0), glm::dvec3(0, 2, 0)};
   for (const bool swapped : {false, true}) {
@@ -120,7 +120,8 @@ TEST(Classify, EveryKindOfPixel) {
     return classify_pixels(floats, brute_force_view_samples(floats, pinhole), light)[0];
   };
   EXPECT_EQ(class_at({0.1, 3, 1}, {0.1, 0, 0.1}), PixelClass::judged);
-  EXPECT_EQ(class_at({0.1, -3, 1}, {0.1, 0, 0.1}), PixelClass::horizon);  // seen from below: the light is under it
+  EXPECT_EQ(class_at({0.1, -3, 1}, {0.1, 0, 0.1}),
+            PixelClass::horizon);  // seen from below: the light is below the visible side's horizon
   EXPECT_EQ(class_at({3.1, 1, 4}, {3.1, 1.2, 0}), PixelClass::horizon);
   EXPECT_EQ(class_at({6.1, 9, 1}, {6.1, 7, 0.1}), PixelClass::behind);
   EXPECT_EQ(class_at({9.1, 9, 1}, {9.1, 0, 0.1}), PixelClass::emitter);
@@ -166,7 +167,8 @@ TEST(Classify, AllOfASunsConeIsAboveOrNot) {
   EXPECT_EQ(class_under(0, 0), PixelClass::horizon) << "along the plane is not strictly above it";
 }
 
-/// Suns that touch the carrier's plane within some units in the last place of their width: double knows of few of them.
+/// Suns whose cone touches the carrier's plane up to a few units in the last place of its width: double decides few of
+/// them.
 TEST(Classify, ASunsConeWithinRoundingOfThePlane) {
   using Number = CGAL::MP_Float;
   std::mt19937 random(7);
@@ -212,7 +214,7 @@ TEST(Classify, ASunsConeWithinRoundingOfThePlane) {
 }
 
 TEST(Horizon, BulkAnswersAreTheExactOnes) {
-  // Planes through lattice points and light points on, next to and far from them.
+  // Planes through lattice points; light points on these planes, next to them and far from them.
   std::mt19937 random(7);
   std::uniform_int_distribution<int> lattice(-2, 2);
   const auto point = [&] { return glm::vec3(lattice(random), lattice(random), lattice(random)); };
@@ -236,7 +238,7 @@ TEST(Horizon, BulkAnswersAreTheExactOnes) {
       const bool above = above_horizon(light, carrier, facing, points[j]);
       if (light.sun) {
         const glm::dvec3 a(carrier[0]), n = glm::cross(glm::dvec3(carrier[1]) - a, glm::dvec3(carrier[2]) - a);
-        const glm::dvec3 lattice_point = glm::round(glm::dvec3(points[j]));  // all but the step of nextafter
+        const glm::dvec3 lattice_point = glm::round(glm::dvec3(points[j]));  // without the step of nextafter
         const double whole = glm::dot(n, lattice_point), rest = glm::dot(n, glm::dvec3(points[j]) - lattice_point);
         EXPECT_EQ(above, (whole != 0 ? whole : rest) * facing > 0);
       }
