@@ -27,7 +27,8 @@ constexpr const char* kDescription =
 
 constexpr const char* kFooter =
     "Exit codes: 0 done; 1 the job ran and a check failed; 2 wrong usage; 3 bad input; 4 device or resource; "
-    "130 interrupted. An output file appears whole or not at all; if the results cannot be written to stdout (a full disk, a closed pipe), the code is 4.\n"
+    "130 interrupted. An output file appears whole or not at all; if the results cannot be written to stdout (a full "
+    "disk, a closed pipe), the code is 4.\n"
     "`penumbra help COMMAND` explains a command, `penumbra methods NAME` a method.";
 
 void start_log(const GlobalOptions& global) {
@@ -60,8 +61,9 @@ int run_command_line(int argc, char** argv) {
   global.arguments.assign(argv + 1, argv + argc);
   auto* quiet = app.add_flag("-q,--quiet", global.quiet, "only errors on stderr, no progress bar");
   app.add_flag("-v,--verbose", global.verbose, "report each step on stderr")->excludes(quiet);
-  app.add_option("--threads", global.threads,
-                 "largest number of threads that work at once (default: the number of processors); results do not depend on it")
+  app.add_option(
+         "--threads", global.threads,
+         "largest number of threads that work at once (default: the number of processors); results do not depend on it")
       ->type_name("N")
       ->check(CLI::Range(1, 4096));
 

@@ -18,7 +18,9 @@ void add_picture_options(CLI::App& command, session::PictureOptions& options) {
       ->type_name("OUT.exr");
   command
       .add_option("--method", options.method,
-                  "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...) (default: for each light the best method with exact areas; if light samples are requested, or there is no such method, the best geometry-based one, or rays)")
+                  "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...) (default: for each "
+                  "light the best method with exact areas; if light samples are requested, or there is no such method, "
+                  "the best geometry-based one, or rays)")
       ->type_name("NAME");
   command.add_option("--stats", options.stats, "times, counters and warnings as JSON; times of one run, the first")
       ->type_name("FILE.json");
@@ -33,13 +35,15 @@ void add_picture_options(CLI::App& command, session::PictureOptions& options) {
       ->type_name("FILE");
   command
       .add_option("--frames", options.frames,
-                  "frames of a sequence, every N-th of them; the number replaces \"####\" or \"%04d\" in files' names, else it precedes the extension")
+                  "frames of a sequence, every N-th of them; the number replaces \"####\" or \"%04d\" in files' names, "
+                  "else it precedes the extension")
       ->type_name("A-B[xN]");
   command.add_option("--fps", options.fps, "frame F is F / fps seconds of a glTF animation (default: 24)")
       ->type_name("N");
   command
       .add_option("--pixel-samples", options.pixel_samples,
-                  "view samples per pixel, on a square grid; R G B A and V are their mean: 1, 4, 9 … 64; other numbers are rounded up to one of these (default: 1, the pixel's centre)")
+                  "view samples per pixel, on a square grid; R G B A and V are their mean: 1, 4, 9 … 64; other numbers "
+                  "are rounded up to one of these (default: 1, the pixel's centre)")
       ->type_name("S");
   command
       .add_option("--pixel-filter", options.pixel_filter,
@@ -59,11 +63,13 @@ void add_picture_options(CLI::App& command, session::PictureOptions& options) {
   command
       .add_option(
           "--light-cutoff", options.light_cutoff,
-          "leaves out a light at pixels where, even if nothing blocked it, it would contribute at most this share of the light of all lights, in each of R, G and B; its V is 0 there (default: 0, no light is left out)")
+          "leaves out a light at pixels where, even if nothing blocked it, it would contribute at most this share of "
+          "the light of all lights, in each of R, G and B; its V is 0 there (default: 0, no light is left out)")
       ->type_name("E");
   command
-      .add_option("--motion-samples", options.motion_samples,
-                  "moments at which the shutter is open; R G B A and V are their mean: 1 to 256 (default: 1, the frame's)")
+      .add_option(
+          "--motion-samples", options.motion_samples,
+          "moments at which the shutter is open; R G B A and V are their mean: 1 to 256 (default: 1, the frame's)")
       ->type_name("N");
   command
       .add_option("--shutter", options.shutter,
@@ -72,7 +78,8 @@ void add_picture_options(CLI::App& command, session::PictureOptions& options) {
   command
       .add_option(
           "--aperture", options.aperture,
-          "radius of the camera's lens in the scene's unit; each view sample of a pixel has a different point of the lens, which blurs surfaces away from the focus distance (default: the camera's; 0: everything is sharp)")
+          "radius of the camera's lens in the scene's unit; each view sample of a pixel has a different point of the "
+          "lens, which blurs surfaces away from the focus distance (default: the camera's; 0: everything is sharp)")
       ->type_name("RADIUS");
   command
       .add_option("--focus-distance", options.focus_distance,
@@ -81,25 +88,27 @@ void add_picture_options(CLI::App& command, session::PictureOptions& options) {
   command
       .add_option(
           "--instances", options.instances,
-          "meshes that occur several times in the scene: copies, shared (stored once; only visible triangles and those that "
+          "meshes that occur several times in the scene: copies, shared (stored once; only visible triangles and those "
+          "that "
           "may shade them are copied), or auto (shared if copies would exceed 500000 triangles, and the method is "
           "exact for each pair or area, or draws one map) (default: auto)")
       ->type_name("NAME");
-  command.add_flag("--skip-existing", options.skip_existing,
-                   "skip pictures whose files all exist: resumes a sequence");
+  command.add_flag("--skip-existing", options.skip_existing, "skip pictures whose files all exist: resumes a sequence");
 }
 
 void add_moments(CLI::App& command, session::PictureOptions& options) {
   command
-      .add_option(
-          "--moment", options.moments,
-          "file of the scene at one moment of the open shutter; may be given several times. R G B A and V are the mean over these files and not of SCENE; everything else is from SCENE")
+      .add_option("--moment", options.moments,
+                  "file of the scene at one moment of the open shutter; may be given several times. R G B A and V are "
+                  "the mean over these files and not of SCENE; everything else is from SCENE")
       ->type_name("FILE")
       ->allow_extra_args(false);
 }
 
 void add_tev(CLI::App& command, std::string& address) {
-  command.add_option("--tev", address, "show each picture in the viewer tev that listens at this address, such as 127.0.0.1:14158")
+  command
+      .add_option("--tev", address,
+                  "show each picture in the viewer tev that listens at this address, such as 127.0.0.1:14158")
       ->type_name("HOST:PORT");
 }
 

@@ -12,9 +12,9 @@ void add_allow_outside(CLI::App& command, bool& allow_outside) {
 }
 
 void add_lenient(CLI::App& command, bool& lenient) {
-  command.add_flag(
-      "--lenient", lenient,
-      "leave out, with a warning, features that affect shadows and that are not supported, or not by the output's format; without this option such a scene is refused");
+  command.add_flag("--lenient", lenient,
+                   "leave out, with a warning, features that affect shadows and that are not supported, or not by the "
+                   "output's format; without this option such a scene is refused");
 }
 
 }  // namespace penumbra::app

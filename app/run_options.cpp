@@ -45,7 +45,8 @@ void add_gltf_options(CLI::App& command, session::GltfOptions& gltf) {
       ->type_name("N");
   command
       .add_option("--clip", gltf.clips,
-                  "glTF: play this animation alone, by its name or its number from 0; may be given again (default: all that can be played together; if several move the same node, only the first of these)")
+                  "glTF: play this animation alone, by its name or its number from 0; may be given again (default: all "
+                  "that can be played together; if several move the same node, only the first of these)")
       ->type_name("NAME|N")
       ->allow_extra_args(false);
 }
@@ -55,7 +56,9 @@ void add_studio_options(CLI::App& command, session::StudioOptions& options) {
       "--studio", options.always,
       "add a soft rectangle light and a floor to the scene, as is done for a mesh or a glTF without lights");
   command.add_flag("--no-studio", options.never, "refuse a scene without lights")->excludes("--studio");
-  command.add_option("--floor", options.floor, "floor of a studio: none, or auto (a floor if the scene does not already lie on one)")
+  command
+      .add_option("--floor", options.floor,
+                  "floor of a studio: none, or auto (a floor if the scene does not already lie on one)")
       ->type_name("none|auto")
       ->capture_default_str();
   command
@@ -91,8 +94,10 @@ void add_run_options(CLI::App& command, session::RunOptions& options) {
       ->type_name("NAME")
       ->allow_extra_args(false);
   command
-      .add_option("--camera", options.camera,
-                  "camera to look through: one of the scene's by its name, fit for a camera that sees the whole scene, or EX,EY,EZ:TX,TY,TZ[:FOV] (eye, target and vertical field of view in degrees) (default: the scene's first)")
+      .add_option(
+          "--camera", options.camera,
+          "camera to look through: one of the scene's by its name, fit for a camera that sees the whole scene, or "
+          "EX,EY,EZ:TX,TY,TZ[:FOV] (eye, target and vertical field of view in degrees) (default: the scene's first)")
       ->type_name("NAME|fit|E:T[:FOV]");
   command
       .add_option("--device", options.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")

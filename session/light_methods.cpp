@@ -58,8 +58,9 @@ std::optional<LightMethod> area_method(const MethodDescription& method, const Li
 
 /// Returns a note about why the light has a different method from similar lights.
 std::string note_of_span(const Light& light, const std::string& method, const std::string& chosen) {
-  return fmt::format("light \"{}\": too far away, or too large or too small relative to the scene, for {}; {} is used instead",
-                     light.name, method, chosen);
+  return fmt::format(
+      "light \"{}\": too far away, or too large or too small relative to the scene, for {}; {} is used instead",
+      light.name, method, chosen);
 }
 
 LightMethod choose(const Light& light, const LightScene& scene, const MethodWish& wish) {

@@ -244,7 +244,8 @@ void MethodHost::settle_form_factors(const Light& light, std::size_t first, std:
     if (std::min({f.x, f.y, f.z}) >= -kLeastFormFactor && std::isfinite(f.x + f.y + f.z)) {
       f = glm::max(f, glm::dvec3(0));
     } else if (wanted(first + i)) {
-      refuse(light, first + i, fmt::format("the form factor ({}, {}, {}), which must be finite and not negative", f.x, f.y, f.z));
+      refuse(light, first + i,
+             fmt::format("the form factor ({}, {}, {}), which must be finite and not negative", f.x, f.y, f.z));
     }
   }
 }
@@ -255,7 +256,8 @@ bool MethodHost::wanted(std::size_t pixel) const {
 
 void MethodHost::refuse(const Light& light, std::size_t pixel, const std::string& what) const {
   throw ResourceError(
-      "method {} gave {}, under light \"{}\" at pixel ({}, {}): an error of this program, so no result of this method is shown; choose another --method, and please report the scene",
+      "method {} gave {}, under light \"{}\" at pixel ({}, {}): an error of this program, so no result of this method "
+      "is shown; choose another --method, and please report the scene",
       method_.description().name, what, light.name, pixel % session_.width, pixel / session_.width);
 }
 

@@ -78,8 +78,7 @@ const MethodRow& find_row(std::string_view name) {
     if (row->description.name == name) return *row;
   }
   const std::vector<std::string> names = names_of(all_methods());
-  throw UsageError("there is no method \"{}\"; methods: {}{}", name, fmt::join(names, ", "),
-                   did_you_mean(name, names));
+  throw UsageError("there is no method \"{}\"; methods: {}{}", name, fmt::join(names, ", "), did_you_mean(name, names));
 }
 
 }  // namespace
@@ -182,7 +181,8 @@ void check_light(const MethodDescription& description, const MethodOptions& opti
       continue;
     }
     throw InputError(
-        "light \"{0}\" is a {1}; method {2} supports a {1}, but not with {3}={4}. Leave the option out, or choose another light (--light)",
+        "light \"{0}\" is a {1}; method {2} supports a {1}, but not with {3}={4}. Leave the option out, or choose "
+        "another light (--light)",
         light.name, visibility::name_of(light.kind), description.name, key, value);
   }
   visibility::check_light(description, light);

@@ -111,8 +111,10 @@ void check_bits(const visibility::MethodDescription& description, std::span<cons
                      description.name);
   }
   if (const std::size_t pieces = whole_lights(lights).front().count; pieces > 1) {
-    throw UsageError("--bits: light \"{}\" is divided into {} pieces, and the file can only contain one; choose another with --light",
-                     light.name, pieces);
+    throw UsageError(
+        "--bits: light \"{}\" is divided into {} pieces, and the file can only contain one; choose another with "
+        "--light",
+        light.name, pieces);
   }
   if (is_body(light.kind)) {
     throw UsageError(

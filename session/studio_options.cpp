@@ -60,7 +60,8 @@ scenes::AddedLight parse_light(const std::string& text) {
   const auto size = parse_number(parts[2]);
   const bool is_sun = light.kind == Kind::sun;
   if (!size || !(is_sun ? *size >= 0 && *size < 180 : *size > 0 && *size <= scenes::kLargestCoordinate))
-    throw refuse(fmt::format("\"{}\" is not a valid {}", parts[2], is_sun ? "angle from 0 to less than 180" : "length above 0"));
+    throw refuse(
+        fmt::format("\"{}\" is not a valid {}", parts[2], is_sun ? "angle from 0 to less than 180" : "length above 0"));
   if (is_sun && *at == glm::dvec3(0)) throw refuse("its direction is zero");
   light.at = *at;
   light.size = *size;

@@ -8,7 +8,7 @@ if(PENUMBRA_WITH_CGAL_GPL)
   find_package(CGAL REQUIRED)
   target_sources(areas_test PRIVATE agreement/exact_area_booleans.cpp)
   set_source_files_properties(agreement/exact_area_booleans.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
-  if(PENUMBRA_SANITIZE)  # CGAL's arrangements cast faces down to what they are not
+  if(PENUMBRA_SANITIZE)  # CGAL's arrangements cast faces to types that they do not have
     set_source_files_properties(agreement/exact_area_booleans.cpp PROPERTIES COMPILE_OPTIONS -fno-sanitize=vptr)
   endif()
   target_link_libraries(areas_test PRIVATE CGAL::CGAL)

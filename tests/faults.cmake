@@ -15,7 +15,7 @@ penumbra_test(faults FULL *Long*
   faults/streams.cpp
   faults/waits.cpp
   LIBRARIES penumbra_base)
-add_library(penumbra_interpose MODULE faults/interpose.cpp)  # what LD_PRELOAD names
+add_library(penumbra_interpose MODULE faults/interpose.cpp)  # tests load it by LD_PRELOAD
 set_target_properties(penumbra_interpose PROPERTIES CXX_VISIBILITY_PRESET default)
 target_link_libraries(penumbra_interpose PRIVATE penumbra_warnings ${CMAKE_DL_LIBS})
 target_compile_definitions(faults_test PRIVATE PENUMBRA_PROGRAM="$<TARGET_FILE:penumbra>"

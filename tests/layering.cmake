@@ -99,7 +99,7 @@ set(kept_vulkan render)
 set(kept_spirv_cross render)
 set(kept_EGL render/opengl)
 set(kept_GL render/opengl)
-set(kept_CGAL mesh repair visibility)  # GPL packages in repair alone: unit/repair/licence.py
+set(kept_CGAL mesh repair visibility)  # packages under the GPL only in repair, which unit/repair/licence.py tests
 set(kept_OpenMesh mesh)
 set(kept_embree3 reference bench)
 set(kept_assimp import)
@@ -140,7 +140,7 @@ endfunction()
 function(check root result)
   set(complaints)
   set(folders ${rooms})
-  list(TRANSFORM folders REPLACE "/.*" "")  # those inside others come with them
+  list(TRANSFORM folders REPLACE "/.*" "")  # top-level folders only: they include those inside
   list(REMOVE_DUPLICATES folders)
   foreach(top ${folders})
     file(GLOB_RECURSE files RELATIVE ${root} ${root}/${top}/*.hpp ${root}/${top}/*.cpp ${root}/${top}/*.h
@@ -185,15 +185,15 @@ endfunction()
 
 if(SELF_TEST)
   file(REMOVE_RECURSE ${SELF_TEST})
-  file(WRITE ${SELF_TEST}/base/a.hpp "#include \"mesh/soup.hpp\"\n")            # against the arrow
-  file(WRITE ${SELF_TEST}/vsm/a.cpp "#include \"maps/filters/methods.hpp\"\n")          # one family on another
-  file(WRITE ${SELF_TEST}/mesh/a.cpp "#include \"soup.hpp\"\n")                 # not from the root
-  file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"session/runner.hpp\"\n")       # in a shader
+  file(WRITE ${SELF_TEST}/base/a.hpp "#include \"mesh/soup.hpp\"\n")            # against the direction of an arrow
+  file(WRITE ${SELF_TEST}/vsm/a.cpp "#include \"maps/filters/methods.hpp\"\n")          # one family includes another
+  file(WRITE ${SELF_TEST}/mesh/a.cpp "#include \"soup.hpp\"\n")                 # a path that does not start at the root
+  file(WRITE ${SELF_TEST}/vsm/b.comp "  #  include \"session/runner.hpp\"\n")       # a wrong include in a shader
   file(WRITE ${SELF_TEST}/maps/host/a.cpp "#include <vulkan/vulkan_raii.hpp>\n")     # a library outside its room
   file(WRITE ${SELF_TEST}/reference/a.hpp "#include <embree3/rtcore.h>\n")      # a library in a header
-  file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/diagnosis/diagnosis.hpp\"\n")     # a room on one inside it that depends on it
-  file(WRITE ${SELF_TEST}/volumes/edges/a.hpp "#include \"volumes/scatter/a.hpp\"\n")  # one room of a family on another
-  file(WRITE ${SELF_TEST}/volumes/counters/a.hpp "#include \"volumes/scatter/vectors/scatter.hpp\"\n")  # siblings: neither on the other
+  file(WRITE ${SELF_TEST}/mesh/a.hpp "#include \"mesh/diagnosis/diagnosis.hpp\"\n")     # a room includes a room inside it that depends on it
+  file(WRITE ${SELF_TEST}/volumes/edges/a.hpp "#include \"volumes/scatter/a.hpp\"\n")  # one room of a family includes another
+  file(WRITE ${SELF_TEST}/volumes/counters/a.hpp "#include \"volumes/scatter/vectors/scatter.hpp\"\n")  # siblings: neither may include the other
   file(WRITE ${SELF_TEST}/volumes/scatter/a.hpp "#include \"volumes/counters/depth_counters.hpp\"\n")
   file(WRITE ${SELF_TEST}/app/fine.cpp "#include \"base/error.hpp\"\n#include <vector>\n#include <CLI/CLI.hpp>\n")
   check(${SELF_TEST} complaints)

@@ -17,7 +17,7 @@ penumbra_test(scenes
   unit/scenes/writer.cpp
   unit/scenes/writer_glb.cpp
   LIBRARIES penumbra_scenes nlohmann_json::nlohmann_json)
-find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp REQUIRED)  # what the schema of scenes is held against
+find_path(VALIJSON_INCLUDE_DIR valijson/validator.hpp REQUIRED)  # the library against which the schema of scenes is tested
 target_include_directories(scenes_test SYSTEM PRIVATE ${VALIJSON_INCLUDE_DIR})
 # g++ 12 with sanitizers falsely warns that std::regex, which valijson uses, may be used uninitialised.
 target_compile_options(scenes_test PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -50,7 +50,8 @@ const std::string& left_to_host(const MethodDescription& description, const Ligh
 void check_light(const MethodDescription& description, const Light& light) {
   if (light.texture && !description.textures) {
     throw InputError(
-        "light \"{}\" has a texture; method {}, with these options, does not weight V by it. Take another light (--light) or "
+        "light \"{}\" has a texture; method {}, with these options, does not weight V by it. Take another light "
+        "(--light) or "
         "method (--method: edge-scatter and raytrace support textures; so do contour, packet and backproject)",
         light.name, description.name);
   }
@@ -79,10 +80,11 @@ void check_light(const MethodDescription& description, const Light& light) {
         light.name, through, description.draws_holes ? "" : "MASK or ", description.name,
         description.gives_area() ? ", as asked for," : "", description.gives_area() ? "areas" : "V");
   }
-  require_kind(light, description.lights,
-               "; method {}, with these options, supports: {}. Take another light (--light) or method (--method; edge-scatter "
-               "and raytrace support every kind)",
-               description.name, description.lights.words());
+  require_kind(
+      light, description.lights,
+      "; method {}, with these options, supports: {}. Take another light (--light) or method (--method; edge-scatter "
+      "and raytrace support every kind)",
+      description.name, description.lights.words());
 }
 
 MethodOptions complete_options(const MethodDescription& description, const MethodOptions& given) {

@@ -32,7 +32,8 @@ ErrorRepair parted_light(const MethodDescription& method, const MethodOptions& g
   return {.cause = ErrorCause::view,
           .end = RepairEnd::limit,
           .runs = {{method.name, options, 2}, {method.name, options, 4}},
-          .words = "the light in 2 × 2 and 4 × 4 parts, with the scene seen from the centre of each, and the limit of both"};
+          .words =
+              "the light in 2 × 2 and 4 × 4 parts, with the scene seen from the centre of each, and the limit of both"};
 }
 
 ErrorRepair more_light_samples(const MethodDescription& method, const MethodOptions& given) {

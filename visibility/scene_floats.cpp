@@ -101,8 +101,9 @@ void refuse_subnormal(const SceneFloats& floats) {
     size = std::max({size, std::abs(floats.lower[axis]), std::abs(floats.upper[axis])});
   }
   if (size == 0 || size >= kSmallestScene) return;
-  throw InputError("the scene reaches only {} from its middle; float32 has full precision only above 1e-36: scale the scene up",
-                   size);
+  throw InputError(
+      "the scene reaches only {} from its middle; float32 has full precision only above 1e-36: scale the scene up",
+      size);
 }
 
 struct Ranked {

@@ -55,19 +55,21 @@ class BakeCommand : public Command {
                    ->default_str("0");
     cli_.add_flag("--vertices", vertices_, "values at vertices in place of a map, as MAP.ply")->excludes(uv);
     cli_.add_option("-o,--output", options_.run.out,
-                    "MAP.exr: the channels of `render`; R G B are the irradiance, A is 1 on texels of the mesh. With --vertices: MAP.ply")
+                    "MAP.exr: the channels of `render`; R G B are the irradiance, A is 1 on texels of the mesh. With "
+                    "--vertices: MAP.ply")
         ->required()
         ->type_name("MAP.exr|MAP.ply");
-    cli_.add_option("--side", side_,
-                    "side to bake: front (from where triangles are counter-clockwise) or back")
+    cli_.add_option("--side", side_, "side to bake: front (from where triangles are counter-clockwise) or back")
         ->type_name("front|back")
         ->capture_default_str();
-    cli_.add_option("--margin", margin_, "width in texels of the margin around the mesh's texels, filled with the nearest texel's value")
+    cli_.add_option("--margin", margin_,
+                    "width in texels of the margin around the mesh's texels, filled with the nearest texel's value")
         ->type_name("N")
         ->check(CLI::Range(0U, kMostMargin))
         ->capture_default_str();
     cli_.add_option("--method", options_.method,
-                    "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...) (default: as in `render`: exact areas if a method computes them)")
+                    "shadow method, see `penumbra methods`, with options if any (NAME:key=value:...) (default: as in "
+                    "`render`: exact areas if a method computes them)")
         ->type_name("NAME");
     cli_.add_option("--stats", options_.stats, "times, counters and warnings as JSON")->type_name("FILE.json");
     cli_.add_option("--png", options_.png, "the irradiance as a picture for viewing")->type_name("FILE.png");

@@ -30,22 +30,24 @@ class ConvertCommand : public Command {
       : Command(app, "convert", "write the scene as the program understood it, in world space") {
     cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file")->required();
     cli_.add_option("-o,--output", out_,
-                    "FILE.json (textures of lights are written next to it: FILE-light0.exr; without alpha and pictures of materials), FILE.glb "
+                    "FILE.json (textures of lights are written next to it: FILE-light0.exr; without alpha and pictures "
+                    "of materials), FILE.glb "
                     "(no textures of lights) or FILE.obj (geometry alone)")
         ->required()
         ->type_name("FILE");
-    cli_.add_option(
-            "--instances", instances_,
-            "meshes that occur several times in the scene: copies (a separate mesh each, in world space), shared (one mesh with several instances; not in .obj), or auto (shared in .glb, and in .json where it reads back as the "
-            "same scene or copies would exceed 500000 triangles) (default: auto)")
+    cli_.add_option("--instances", instances_,
+                    "meshes that occur several times in the scene: copies (a separate mesh each, in world space), "
+                    "shared (one mesh with several instances; not in .obj), or auto (shared in .glb, and in .json "
+                    "where it reads back as the "
+                    "same scene or copies would exceed 500000 triangles) (default: auto)")
         ->type_name("NAME");
     add_allow_outside(cli_, allow_outside_);
     add_lenient(cli_, lenient_);
     add_gltf_options(cli_, gltf_);
     add_studio_options(cli_, studio_);
-    cli_.add_option(
-            "--camera", camera_,
-            "an additional camera, which becomes the first: fit for a camera that sees the whole scene, or EX,EY,EZ:TX,TY,TZ[:FOV]")
+    cli_.add_option("--camera", camera_,
+                    "an additional camera, which becomes the first: fit for a camera that sees the whole scene, or "
+                    "EX,EY,EZ:TX,TY,TZ[:FOV]")
         ->type_name("fit|E:T[:FOV]");
   }
 

@@ -95,9 +95,9 @@ class DevicesCommand : public Command {
             app, "devices",
             "list the Vulkan devices and OpenGL contexts, and why any of them cannot be used, or not by some methods") {
     cli_.add_flag("--json", json_, "print JSON in place of the table");
-    cli_.add_flag(
-        "--self-test", self_test_,
-        "compare every pass with its twin in C++, and both rasterisers (Vulkan's and OpenGL's) with double arithmetic and with each other, on this machine's device and drivers; exit 1 if one fails");
+    cli_.add_flag("--self-test", self_test_,
+                  "compare every pass with its twin in C++, and both rasterisers (Vulkan's and OpenGL's) with double "
+                  "arithmetic and with each other, on this machine's device and drivers; exit 1 if one fails");
     cli_.add_option("--device", device_,
                     "with --self-test: Vulkan device to test: part of its name, its index, or cpu (default: "
                     "the best)")
@@ -109,7 +109,8 @@ class DevicesCommand : public Command {
 
   int run(const GlobalOptions&) override {
     if (self_test_) return run_self_test();
-    if (!device_.empty()) throw UsageError("--device {}: only --self-test takes a device; the table lists all devices", device_);
+    if (!device_.empty())
+      throw UsageError("--device {}: only --self-test takes a device; the table lists all devices", device_);
     const auto devices = render::list_devices();
     if (devices.empty()) {
       spdlog::warn(

@@ -60,8 +60,12 @@ class CompletionCommand : public Command {
  public:
   explicit CompletionCommand(CLI::App& app)
       : Command(app, "completion", "print the script with which a shell completes commands, options and methods") {
-    cli_.add_option("SHELL", shell_, "bash, zsh or fish; or commands, which prints only the commands' names")->required()->type_name("");
-    cli_.footer("`source <(penumbra completion bash)`; an installation puts the scripts of all three shells where these look for them.\n");
+    cli_.add_option("SHELL", shell_, "bash, zsh or fish; or commands, which prints only the commands' names")
+        ->required()
+        ->type_name("");
+    cli_.footer(
+        "`source <(penumbra completion bash)`; an installation puts the scripts of all three shells where these look "
+        "for them.\n");
   }
 
   int run(const GlobalOptions&) override {

@@ -134,7 +134,9 @@ class CompareCommand : public Command {
             "--methods,--method", methods_,
             "methods to compare: names, each with options if any (a:key=value,b); or a group: geometry, image, all, "
             "or "
-            "default, which is geometry and image without the methods that take minutes (or seconds, where the device is a processor). A method of a group that takes more than 30 seconds for one run is left out, with a warning, "
+            "default, which is geometry and image without the methods that take minutes (or seconds, where the device "
+            "is a processor). A method of a group that takes more than 30 seconds for one run is left out, with a "
+            "warning, "
             "except with --max-rmse or --frames")
         ->type_name("LIST")
         ->capture_default_str();
@@ -145,7 +147,8 @@ class CompareCommand : public Command {
         ->type_name(fmt::format("{}|NAME:key=value", fmt::join(session::judge_names(), "|")))
         ->capture_default_str();
     cli_.add_option("--reference-samples", options_.reference_samples,
-                    "number of light samples of the reference; same: the methods' light samples, so that answers are compared pair by pair")
+                    "number of light samples of the reference; same: the methods' light samples, so that answers are "
+                    "compared pair by pair")
         ->type_name("M|same")
         ->capture_default_str();
     cli_.add_option(
@@ -160,15 +163,16 @@ class CompareCommand : public Command {
         ->type_name("N")
         ->check(CLI::Range(1, 1000));
     cli_.add_flag("--bits", options_.bits, "also write DIR/<method>.bits: every pair's answer (mask methods)");
-    cli_.add_flag(
-        "--error-budget", options_.error_budget,
-        "measure the causes of each method's error: run it again with each cause removed in turn, and with all removed (ten to twenty runs per method)");
+    cli_.add_flag("--error-budget", options_.error_budget,
+                  "measure the causes of each method's error: run it again with each cause removed in turn, and with "
+                  "all removed (ten to twenty runs per method)");
     cli_.add_flag("--png", options_.png, "also write DIR/<method>.png: tone-mapped beauty image (sRGB)");
     cli_.add_option("--stats", options_.stats, "write metrics.json here as well")->type_name("FILE.json");
     cli_.add_option("--frame", frame_, "frame of the scene's animation, or a moment between two, such as 12.5")
         ->type_name("F");
     cli_.add_option("--frames", frames_,
-                    "frames of the scene's animation, every N-th: errors over all of them, and how much each method flickers compared with the reference; pictures and report are of the last frame")
+                    "frames of the scene's animation, every N-th: errors over all of them, and how much each method "
+                    "flickers compared with the reference; pictures and report are of the last frame")
         ->type_name("A-B[xN]");
     cli_.add_option("--fps", fps_, "frame F is F / fps seconds of a glTF animation (default: 24)")->type_name("N");
     cli_.add_option("--exposure", exposure_,
@@ -255,7 +259,8 @@ class CompareCommand : public Command {
       throw UsageError("--aperture {}: methods are compared through the lens's middle; expected 0", aperture_);
     if (instances_ != "auto" && instances_ != "copies") {
       throw UsageError(
-          "--instances {}: methods are compared on copies of the instances, which all methods support; expected auto or copies",
+          "--instances {}: methods are compared on copies of the instances, which all methods support; expected auto "
+          "or copies",
           instances_);
     }
     if (session::parse_number(light_cutoff_) != 0.0)

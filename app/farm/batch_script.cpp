@@ -61,15 +61,16 @@ std::filesystem::path script_of(const BatchJob& job) {
 
 std::string text_of(const BatchJob& job) {
   std::string text =
-      "#!/bin/bash\n# Written by `penumbra submit`. These commands submit it, and a summary that runs after all of its tasks:\n";
+      "#!/bin/bash\n# Written by `penumbra submit`. These commands submit it, and a summary that runs after all of its "
+      "tasks:\n";
   std::vector<std::string> summary = sbatch_summary(job, "");
   const std::string after = std::exchange(summary.back(), {});
   summary.pop_back();
   text += fmt::format("#   array=$({}); {} {}$array\n", shell_words(sbatch_array(job)), shell_words(summary), after);
   if (!job.first_frame.empty())
-    text +=
-        fmt::format("# The first frame determines the exposure of all frames, and must be rendered before:\n#   {} render {} {}\n",
-                    shell_word(job.program), shell_words(job.words), job.first_frame);
+    text += fmt::format(
+        "# The first frame determines the exposure of all frames, and must be rendered before:\n#   {} render {} {}\n",
+        shell_word(job.program), shell_words(job.words), job.first_frame);
   text += fmt::format("#SBATCH --job-name={}\n", sbatch_word(job.name));
   text += fmt::format("#SBATCH --array=0-{}\n", job.tasks.size() - 1);
   text += fmt::format("#SBATCH --output={}\n", sbatch_word(sbatch_name(job.folder.string()) + "/%A_%a.log"));

@@ -63,8 +63,9 @@ class SubmitCommand : public Command {
         ->type_name("N")
         ->check(CLI::Range(1, 101))
         ->capture_default_str();
-    cli_.add_option("--logs", logs_,
-                    "folder for a log of each frame; without Slurm; tasks of an array write these logs next to their own logs")
+    cli_.add_option(
+            "--logs", logs_,
+            "folder for a log of each frame; without Slurm; tasks of an array write these logs next to their own logs")
         ->type_name("DIR");
     add("--sbatch", sbatch_, "option for sbatch: partition=NAME, time=HOURS:MM:SS, mem=8G …; may be given again")
         ->type_name("KEY[=VALUE]")
@@ -190,8 +191,9 @@ class SubmitCommand : public Command {
         constexpr std::size_t kEnough = 3;
         if (failed.size() == kEnough) throw Error(static_cast<ExitCode>(now.front().code), give_up(failed));
         if (!now.empty()) {
-          spdlog::warn("frame {}, which determines the exposure (--exposure first), failed: the next frame determines it",
-                       frame);
+          spdlog::warn(
+              "frame {}, which determines the exposure (--exposure first), failed: the next frame determines it",
+              frame);
           continue;
         }
       }
@@ -342,7 +344,8 @@ class SubmitCommand : public Command {
       return 0;
     }
     const std::size_t chunk = chunk_ ? static_cast<std::size_t>(*chunk_) : frames_per_task(*cost);
-    if (cost) spdlog::info("{:.2f} s to start and {:.2f} s per frame: {} frames per task", cost->begin, cost->frame, chunk);
+    if (cost)
+      spdlog::info("{:.2f} s to start and {:.2f} s per frame: {} frames per task", cost->begin, cost->frame, chunk);
     BatchJob job = job_of(frames, chunk, most);
     job.exposure = exposure;
     write_file_atomically(script_of(job), text_of(job));

@@ -39,7 +39,8 @@ class InspectCommand : public Command {
   explicit InspectCommand(CLI::App& app)
       : Command(app, "inspect", "list defects of meshes, and each method's verdict on them") {
     cli_.add_option("FILE", named_,
-                    "meshes (OBJ, PLY, OFF, STL …), scenes (.json, .gltf, .glb), or folders of them, searched with all subfolders")
+                    "meshes (OBJ, PLY, OFF, STL …), scenes (.json, .gltf, .glb), or folders of them, searched with all "
+                    "subfolders")
         ->required()
         ->type_name("FILE|FOLDER");
     cli_.add_option("--json", json_,
@@ -186,7 +187,8 @@ class InspectCommand : public Command {
     if (!(weld_ >= 0 && std::isfinite(weld_))) {
       throw UsageError("--weld {}: expected a distance, 0 or more, in the file's unit", weld_);
     }
-    if (json_ == "-" && csv_ == "-") throw UsageError("--json - and --csv -: only one of them can be written to stdout");
+    if (json_ == "-" && csv_ == "-")
+      throw UsageError("--json - and --csv -: only one of them can be written to stdout");
     if (!defects_.empty() && defects_.extension() != ".ply")
       throw UsageError("{}: expected a name that ends in .ply", defects_.string());
     if (!png_.empty() && png_.extension() != ".png")

@@ -18,7 +18,8 @@ class ServeCommand : public Command {
  public:
   explicit ServeCommand(CLI::App& app)
       : Command(app, "serve",
-                "make pictures for another program, such as Blender's viewport, which sends messages to stdin and gets answers from stdout (docs/serve.md); exits at the end of its input") {
+                "make pictures for another program, such as Blender's viewport, which sends messages to stdin and gets "
+                "answers from stdout (docs/serve.md); exits at the end of its input") {
     cli_.add_option("--device", run_.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
         ->type_name("NAME|INDEX|cpu");
     cli_.add_option("--normals", run_.normals,

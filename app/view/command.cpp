@@ -51,12 +51,14 @@ class ViewCommand : public Command {
  public:
   explicit ViewCommand(CLI::App& app)
       : Command(app, "view",
-                "show the scene in a browser, where camera and lights can be moved: serves one page on this machine, and prints its address") {
+                "show the scene in a browser, where camera and lights can be moved: serves one page on this machine, "
+                "and prints its address") {
     cli_.add_option("SCENE", run_.scene,
                     "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file, around which a studio is put")
         ->required();
     cli_.add_option("--host", host_,
-                    "address of this machine to serve on; addresses other than the loopback address admit, without encryption, every client that knows the complete address")
+                    "address of this machine to serve on; addresses other than the loopback address admit, without "
+                    "encryption, every client that knows the complete address")
         ->type_name("ADDRESS")
         ->capture_default_str();
     cli_.add_option("--port", port_, "port to serve on; 0: any free port")
@@ -67,7 +69,8 @@ class ViewCommand : public Command {
     cli_.add_flag("--watch", watch_, "read the scene again when its file, or a file that it names, changes");
     cli_.add_option("--method", method_, "method to begin with, NAME:key=value:... (default: exact areas)")
         ->type_name("NAME");
-    cli_.add_option("--method-b", other_, "second method, for comparison, NAME:key=value:... (default: none)")->type_name("NAME");
+    cli_.add_option("--method-b", other_, "second method, for comparison, NAME:key=value:... (default: none)")
+        ->type_name("NAME");
     cli_.add_option("--light-samples", samples_, "light samples to begin with, 1 to 4096 (default: exact areas)")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
@@ -79,7 +82,9 @@ class ViewCommand : public Command {
     cli_.add_option("--device", run_.device, "Vulkan device: part of its name, its index, or cpu (default: the best)")
         ->type_name("NAME|INDEX|cpu");
     cli_.add_option("--instances", instances_,
-                    "instances of meshes: copies (take time and memory at the start); shared (needed triangles are found again for each picture; only for methods that need the space between view samples and lights alone); or auto (copies up to 5,000,000 triangles)")
+                    "instances of meshes: copies (take time and memory at the start); shared (needed triangles are "
+                    "found again for each picture; only for methods that need the space between view samples and "
+                    "lights alone); or auto (copies up to 5,000,000 triangles)")
         ->type_name("auto|copies|shared");
     add_allow_outside(cli_, run_.allow_outside);
     add_lenient(cli_, run_.lenient);

@@ -49,8 +49,9 @@ LiveChange change_light(LiveState& state, const json& message) {
     for (const char* key : {"radiance", "irradiance", "twoSided"}) one->erase(key);
   }
   if (before != after && has_body(state.scene, light))
-    throw InputError("light \"{}\" has a body in the scene, which would not change with it: its shape must stay that of the file",
-                     light.name);
+    throw InputError(
+        "light \"{}\" has a body in the scene, which would not change with it: its shape must stay that of the file",
+        light.name);
   light = std::move(made);
   return LiveChange::picture;
 }

@@ -29,7 +29,8 @@ WholeScene read_whole_scene(const session::RunOptions& options, session::Instanc
     }
   }
   read.scene.warnings.push_back(fmt::format(
-      "{} triangles with the {} instances of meshes, too many for copies: each picture finds the triangles that it needs; methods that need all triangles, and the 3D view, are not available (--instances copies makes them so)",
+      "{} triangles with the {} instances of meshes, too many for copies: each picture finds the triangles that it "
+      "needs; methods that need all triangles, and the 3D view, are not available (--instances copies makes them so)",
       triangles, read.instances.all.size()));
   return read;
 }

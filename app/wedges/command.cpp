@@ -71,7 +71,8 @@ class WedgesCommand : public Command {
         ->type_name("FILE.glb|.obj|.ply");
     cli_.add_option("--json", json_, "edges, planes, violations")->type_name("FILE");
     cli_.add_option("--explain", explain_,
-                    "explain this pixel of the picture that `render` makes: the wedges that contain its surface point, the area that each subtracts or adds, their sum, and the exact area")
+                    "explain this pixel of the picture that `render` makes: the wedges that contain its surface point, "
+                    "the area that each subtracts or adds, their sum, and the exact area")
         ->type_name("X,Y");
     cli_.add_option("--size", size_, "size of the picture of --explain (default: as in `render`)")->type_name("WxH");
     cli_.add_option("--camera", camera_,

@@ -224,8 +224,9 @@ class Comparison {
     }
     entries_ = std::move(kept);
     if (entries_.empty() && !report_.metrics.left_out.empty())
-      throw UsageError("all methods are left out, since each takes longer than {:.0f} seconds: request one by name (--methods)",
-                       options_.most_seconds);
+      throw UsageError(
+          "all methods are left out, since each takes longer than {:.0f} seconds: request one by name (--methods)",
+          options_.most_seconds);
   }
 
   void leave_out(const Entry& entry, double seconds) {
@@ -233,7 +234,8 @@ class Comparison {
     const auto has_budget = [](const visibility::OptionDescription& option) { return option.name == "budget"; };
     const bool bounded = std::ranges::any_of(entry.description.options, has_budget);
     warn(
-        fmt::format("{} is left out: a run would take about {:.0f} seconds here, and the limit for methods that are not requested by name is {:.0f}; request it by name (--methods){}",
+        fmt::format("{} is left out: a run would take about {:.0f} seconds here, and the limit for methods that are "
+                    "not requested by name is {:.0f}; request it by name (--methods){}",
                     entry.label, seconds, options_.most_seconds,
                     bounded ? fmt::format(", or bound its texels: {}:budget=4096", entry.label) : ""));
     report_.metrics.left_out.push_back({entry.label, seconds, options_.most_seconds});

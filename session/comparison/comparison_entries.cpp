@@ -150,12 +150,14 @@ std::vector<Entry> choose_entries(const ComparisonOptions& options, const Sessio
     entries = std::move(costly_entries);
   else if (!costly.empty())
     warn(
-        fmt::format("{} left out: image-based methods replace a sphere by up to 54 disks and a dome by many suns, each with separate maps; request a method by name to include it",
+        fmt::format("{} left out: image-based methods replace a sphere by up to 54 disks and a dome by many suns, each "
+                    "with separate maps; request a method by name to include it",
                     fmt::join(costly, ", ")));
   if (!slow.empty())
-    warn(fmt::format(
-        "{} left out: a picture takes seconds on {}, which is not a GPU; request a method, or the group image, by name to include it",
-        fmt::join(slow, ", "), machine.device().info().name));
+    warn(
+        fmt::format("{} left out: a picture takes seconds on {}, which is not a GPU; request a method, or the group "
+                    "image, by name to include it",
+                    fmt::join(slow, ", "), machine.device().info().name));
   if (!without_device.empty()) {
     if (entries.empty()) throw ResourceError("{}: {}", fmt::join(without_device, ", "), no_device);
     warn(fmt::format("{} left out: {}", fmt::join(without_device, ", "), no_device));
@@ -173,7 +175,8 @@ void require_explainable(std::span<const MethodEntry> methods) {
   if (std::ranges::any_of(methods, [](const MethodEntry& m) { return describe_method(m.name).repairs != nullptr; }))
     return;
   throw UsageError(
-      "--error-budget: the chosen methods are references, whose errors are not divided by cause: choose another one with --methods (see `penumbra methods`)");
+      "--error-budget: the chosen methods are references, whose errors are not divided by cause: choose another one "
+      "with --methods (see `penumbra methods`)");
 }
 
 RunPlan plan_of(const Entry& entry, bool is_reference, const ComparisonOptions& options) {

@@ -45,12 +45,14 @@ std::vector<std::string> ComparisonFiles::remove(const std::string& label) const
     const auto status = std::filesystem::symlink_status(file, error);
     if (!std::filesystem::exists(status)) continue;
     if (!std::filesystem::is_regular_file(status)) {
-      left.push_back(fmt::format("{} was left by an earlier run and is not a regular file: it is not removed", file.string()));
+      left.push_back(
+          fmt::format("{} was left by an earlier run and is not a regular file: it is not removed", file.string()));
       continue;
     }
     std::filesystem::remove(file, error);
     if (error) {
-      left.push_back(fmt::format("{} was left by an earlier run and cannot be removed: {}", file.string(), error.message()));
+      left.push_back(
+          fmt::format("{} was left by an earlier run and cannot be removed: {}", file.string(), error.message()));
     }
   }
   return left;

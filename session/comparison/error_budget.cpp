@@ -33,7 +33,8 @@ using visibility::RepairRun;
 /// Returns the reason why a light cannot be divided into parts; empty if it can.
 std::string why_whole(const Light& light) {
   if (!visibility::is_planar(light.kind))
-    return fmt::format("the light is a {}: only lights in one plane are divided into parts", visibility::name_of(light.kind));
+    return fmt::format("the light is a {}: only lights in one plane are divided into parts",
+                       visibility::name_of(light.kind));
   if (light.texture) return "the light has a texture, which its parts would lack";
   return {};
 }

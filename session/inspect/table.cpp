@@ -107,8 +107,9 @@ std::string all_rows(const ObjectReport& object, std::size_t list_limit) {
               fmt::format("largest coordinate {}, shortest edge {}", figure(d.largest_coordinate, 7),
                           figure(d.shortest_edge, 3)));
   if (d.vertices_lost + d.triangles_lost > 0) {
-    text += row("lost in float", grouped(d.vertices_lost),
-                fmt::format("vertices become equal to others; {} triangles lose their area", grouped(d.triangles_lost)));
+    text +=
+        row("lost in float", grouped(d.vertices_lost),
+            fmt::format("vertices become equal to others; {} triangles lose their area", grouped(d.triangles_lost)));
   }
   if (object.silhouettes) {
     text += row("silhouette edges", fmt::format("{:.0f}", object.silhouettes->mean),

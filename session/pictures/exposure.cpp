@@ -28,9 +28,9 @@ Exposure parse_exposure(const std::string& text) {
   if (std::filesystem::path(text).extension() == ".exr") {
     const auto written = written_exposure(text);
     if (written) return {Exposure::Kind::fixed, *written};
-    throw InputError("--exposure {}: {}", text,
-                     is_picture(text) ? "its header has no exposure (penumbra.exposure)"
-                                      : "this picture does not exist");
+    throw InputError(
+        "--exposure {}: {}", text,
+        is_picture(text) ? "its header has no exposure (penumbra.exposure)" : "this picture does not exist");
   }
   const auto stops = parse_number(text.starts_with('+') ? std::string_view(text).substr(1) : std::string_view(text));
   if (!stops || !(std::abs(*stops) <= 100)) {

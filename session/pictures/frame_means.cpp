@@ -59,9 +59,10 @@ bool FrameRenderer::has_lens(const scenes::Scene& scene) {
       wanted.empty() ? scene.cameras.begin() : std::ranges::find(scene.cameras, wanted, &scenes::Camera::name);
   if (surface_ || camera == scene.cameras.end() || !camera->lens) return false;
   if (picture_.frame.pixel_side > 1 || !picture_.frame.moments.empty()) return true;
-  picture_.notes.push_back(fmt::format(
-      "camera \"{}\" has an aperture: with one view sample per pixel, it looks through the lens's middle, and everything is sharp; blur needs --pixel-samples N",
-      camera->name));
+  picture_.notes.push_back(
+      fmt::format("camera \"{}\" has an aperture: with one view sample per pixel, it looks through the lens's middle, "
+                  "and everything is sharp; blur needs --pixel-samples N",
+                  camera->name));
   say_once({picture_.notes.back()});
   return false;
 }

@@ -128,8 +128,9 @@ void FrameRenderer::say_idle_lights() {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const visibility::Light& light = lit().lights[lights[i].first];
     if (light.radiance == glm::dvec3(0) || done_.lights_something[i] != 0) continue;
-    warnings.push_back(fmt::format("no visible point is in front of light \"{}\": nothing in the picture is lit by it{}",
-                                   light.name, light.two_sided ? "" : " (does it shine the other way?)"));
+    warnings.push_back(
+        fmt::format("no visible point is in front of light \"{}\": nothing in the picture is lit by it{}", light.name,
+                    light.two_sided ? "" : " (does it shine the other way?)"));
   }
   say_once(warnings);
 }

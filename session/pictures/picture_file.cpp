@@ -229,7 +229,8 @@ std::vector<std::string> write_picture(AtomicFile& file, const PictureContent& c
   if (triangles >= kFloatNumbers) {
     image.attributes["penumbra.triangle"] = "id + 1 = triangle.X + 16777216 * triangle_high.X; 0: no triangle";
     warnings.push_back(
-        fmt::format("{} triangles: more than a float can count, so triangle.X has the number modulo 16777216, and triangle_high.X the quotient (id has the whole number)",
+        fmt::format("{} triangles: more than a float can count, so triangle.X has the number modulo 16777216, and "
+                    "triangle_high.X the quotient (id has the whole number)",
                     triangles));
   }
   const Mattes* const mattes = content.mattes;

@@ -33,7 +33,8 @@ void parse_means(const PictureOptions& options, PictureRequest& request) {
       parse_count(options.pixel_samples, "--pixel-samples", 64, "a number from 1 to 64, such as 4, 9 or 16");
   while (request.pixel_side * request.pixel_side < samples) ++request.pixel_side;
   if (const std::uint32_t square = request.pixel_side * request.pixel_side; square != samples)
-    spdlog::warn("--pixel-samples {}: {}, the next square number, since view samples are on a square grid", samples, square);
+    spdlog::warn("--pixel-samples {}: {}, the next square number, since view samples are on a square grid", samples,
+                 square);
   request.filter = parse_filter(options.pixel_filter, options.filter_width);
   if (request.filter.kind != PixelFilter::Kind::box && samples == 1)
     throw UsageError("--pixel-filter {} needs several view samples a pixel: --pixel-samples 4 or more",
@@ -103,7 +104,8 @@ void parse_lens(const PictureOptions& options, PictureRequest& request) {
       length(options.aperture, "--aperture", "a lens's radius above 0, such as 0.02, or 0 for none", true);
   if (*request.aperture > 0 && request.pixel_side == 1 && request.moments == 1)
     throw UsageError(
-        "--aperture {}: with one view sample per pixel, it looks through the lens's middle, and everything is sharp; blur needs --pixel-samples 4 or more",
+        "--aperture {}: with one view sample per pixel, it looks through the lens's middle, and everything is sharp; "
+        "blur needs --pixel-samples 4 or more",
         options.aperture);
   if (*request.aperture == 0 && request.focus_distance)
     throw UsageError("--focus-distance {}: there is no lens with --aperture 0", options.focus_distance);
@@ -116,7 +118,8 @@ void refuse_numbered_moments(const PictureOptions& options, const PictureRequest
   for (const auto& file : {options.run.out, options.stats, options.png, options.bits}) {
     if (has_frame_number(file))
       throw UsageError(
-          "{}: frame {} is between two frames and has no whole number for the file's name; remove the placeholder for the number",
+          "{}: frame {} is between two frames and has no whole number for the file's name; remove the placeholder for "
+          "the number",
           file.string(), *frame);
   }
 }
@@ -132,7 +135,8 @@ InstanceUse parse_instances(const std::string& text, const MethodWish& wish) {
     return text == "shared" ? InstanceUse::shared : InstanceUse::automatic;
   if (text == "shared")
     throw UsageError(
-        "--instances shared: {} needs more than the triangles between a view sample and the light; choose another --method",
+        "--instances shared: {} needs more than the triangles between a view sample and the light; choose another "
+        "--method",
         wish.method);
   return InstanceUse::copies;
 }
@@ -143,11 +147,13 @@ const char* cannot_pass(const scenes::Scene& scene, std::uint32_t pixel_samples)
     return std::holds_alternative<scenes::Sphere>(light.shape) || std::holds_alternative<scenes::Dome>(light.shape) ||
            std::holds_alternative<scenes::Pieces>(light.shape);
   };
-  if (std::ranges::any_of(scene.lights, is_round)) return "supports only suns and lights in one plane with shared meshes";
+  if (std::ranges::any_of(scene.lights, is_round))
+    return "supports only suns and lights in one plane with shared meshes";
   if (std::ranges::any_of(scene.lights, [](const auto& light) { return !light.unshaded_by.empty(); }))
     return "supports no lights with their own lists of casters with shared meshes";
   const auto is_open = [](const scenes::Object& object) { return object.alpha.mode != scenes::Alpha::Mode::opaque; };
-  if (std::ranges::any_of(scene.objects, is_open)) return "supports no surfaces with holes and no translucent ones with shared meshes";
+  if (std::ranges::any_of(scene.objects, is_open))
+    return "supports no surfaces with holes and no translucent ones with shared meshes";
   return pixel_samples > 1 ? "supports one view sample per pixel with shared meshes" : nullptr;
 }
 
@@ -219,11 +225,9 @@ void set_lens(scenes::Scene& scene, const PictureRequest& request, const std::st
       continue;
     }
     if (!request.aperture && !one.lens)
-      throw UsageError("--focus-distance: camera \"{}\" has no lens; set its radius with --aperture",
-                       one.name);
+      throw UsageError("--focus-distance: camera \"{}\" has no lens; set its radius with --aperture", one.name);
     if (!request.focus_distance && !one.lens)
-      throw UsageError("--aperture: camera \"{}\" has no focus distance; set it with --focus-distance",
-                       one.name);
+      throw UsageError("--aperture: camera \"{}\" has no focus distance; set it with --focus-distance", one.name);
     one.lens = {request.aperture ? *request.aperture : one.lens->radius,
                 request.focus_distance ? *request.focus_distance : one.lens->focus_distance};
   }

@@ -34,8 +34,9 @@ void OutputFiles::add(const std::string& option, const std::filesystem::path& pa
     throw UsageError("{} -: expected the name of a file; stdout does not take it (./- is a file)", option);
   const auto [other, is_new] = numbers_.emplace(identity_of(path), files_.size());
   if (!is_new) {
-    throw UsageError("{} {} and {} {} are the same file, which two outputs cannot share; choose another name for one of them",
-                     files_[other->second].option, files_[other->second].path.string(), option, path.string());
+    throw UsageError(
+        "{} {} and {} {} are the same file, which two outputs cannot share; choose another name for one of them",
+        files_[other->second].option, files_[other->second].path.string(), option, path.string());
   }
   files_.push_back({option, path});
 }

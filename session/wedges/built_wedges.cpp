@@ -68,8 +68,8 @@ std::vector<glm::dvec3> shape_of(const visibility::Light& light, const volumes::
 
 void require_wedges(const visibility::Light& light) {
   if (!light.sun) return;
-  throw InputError("light \"{}\" is a {}; only lights at a finite distance have wedges: choose another (--light)", light.name,
-                   visibility::name_of(light.kind));
+  throw InputError("light \"{}\" is a {}; only lights at a finite distance have wedges: choose another (--light)",
+                   light.name, visibility::name_of(light.kind));
 }
 
 LightWedges wedges_of(const volumes::Casters& casters, const visibility::Light& light, const WedgeRequest& request) {
@@ -97,7 +97,8 @@ BuiltWedges::BuiltWedges(const scenes::Scene& scene, const WedgeRequest& asked) 
   if (!light.unshaded_by.empty()) floats = cast_for(floats, light);
   if (!light.filtered_by.empty())
     warnings.push_back(fmt::format(
-        "\"{}\" lets light through (alphaMode MASK or BLEND): wedges exist only for casters that block all light", light.filtered_by));
+        "\"{}\" lets light through (alphaMode MASK or BLEND): wedges exist only for casters that block all light",
+        light.filtered_by));
   require_wedges(light);
   step(0.1);
   casters = volumes::casters_of(floats, light);

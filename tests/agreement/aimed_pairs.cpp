@@ -42,7 +42,7 @@ class AimedPairs : public tests::DeviceTest, public testing::WithParamInterface<
       fmt::print("up to {:.1f} % of the bound is used\n", 100 * used);
       RecordProperty("percent_of_bound", fmt::format("{:.1f}", 100 * used));
       EXPECT_LT(used, 1);
-      EXPECT_GT(used, tests::planted_cut(aim)) << "planted_faults cuts it to that";
+      EXPECT_GT(used, tests::planted_cut(aim)) << "the cut of the bound in planted_faults would not be noticed";
     }
     EXPECT_GT(counts.visible, counts.pairs / 20);
     EXPECT_GT(aim == Aim::horizon ? counts.horizon : counts.blocked, counts.pairs / 100);

@@ -60,7 +60,8 @@ TEST_F(HybridVolume, AsksVolumesWhereTexelsDisagree) {
     EXPECT_LT(silhouettes, all.hybrid.size() / 4) << name;
     // The differing pixels are mostly near contacts, where the map's bias removes a shadow.
     EXPECT_LT(differing, wrong_map / 2 + 1) << name;
-    EXPECT_LT(all.counters.at("countUpdates"), all.of_volumes.at("countUpdates") / 2) << name << ": the mask";
+    EXPECT_LT(all.counters.at("countUpdates"), all.of_volumes.at("countUpdates") / 2)
+        << name << ": the stencil mask of silhouette pixels must save updates";
   }
 }
 

@@ -187,10 +187,10 @@ TEST_F(MeshVerdicts, AreWhatEachMethodDoesWithEachDefect) {
   });
   for (const char* name : {"edge-scatter", "view-sample", "depth-complexity", "exact"})
     EXPECT_TRUE(exact.contains(name));
-  EXPECT_EQ(most.size() + exact.size(), methods.size()) << "one verdict a method, whatever the defect";
+  EXPECT_EQ(most.size() + exact.size(), methods.size()) << "a method's verdict must be the same for every defect";
   for (const auto& [name, error] : most) {
     fmt::print("{}: off by {:.4f} {}\n", name, error, name == "accumulate" ? "pairs" : "of V");
-    EXPECT_GT(error, 0.01) << name << " is called approximate, yet exact";
+    EXPECT_GT(error, 0.01) << name << " is called approximate, but is exact";
   }
 }
 

@@ -67,7 +67,7 @@ TEST_F(MethodTable, ListsEachMethodOnceTheDefaultFirst) {
   using visibility::Family;
   EXPECT_EQ(families, (std::vector{Family::geometry, Family::image, Family::reference}));
   EXPECT_EQ(session::all_methods()[0]->name, "edge-scatter");
-  EXPECT_EQ(session::all_methods()[1]->name, "view-sample") << "a row of another table, by its precedence";
+  EXPECT_EQ(session::all_methods()[1]->name, "view-sample") << "the methods of all tables are sorted by precedence";
   EXPECT_EQ(session::ray_judge().name, "raytrace");
 }
 

@@ -96,7 +96,7 @@ TEST(RadianceNearLight, CellsBeatSamplesAndBothBeatV) {
   const auto scaled = first.shade({.visibility = exact.visibility});
   const double of_v = error([&](std::size_t i) { return scaled[i].x; });
   fmt::print("V × unshadowed, V exact: {:.4f}\n", of_v);
-  EXPECT_GT(of_v, 0.1) << "the picture that this is about";
+  EXPECT_GT(of_v, 0.1) << "the picture must show the error that this test measures";
 
   double cells_before = of_v;
   for (const std::uint32_t count : {16u, 64u, 256u, 1024u}) {

@@ -136,7 +136,7 @@ def check_sorting(page):
     for order, values in (("ascending", sorted(wanted)), ("descending", sorted(wanted, reverse=True)), (None, wanted)):
         browser.key("Enter")
         same(browser.ask(f"[...{table}.tBodies[0].rows].map(r => Number(r.cells[2].dataset.value))"), values, f"RMSE {order}")
-        same(browser.ask(f"{table}.tHead.rows[0].cells[2].getAttribute('aria-sort')"), order, "said")
+        same(browser.ask(f"{table}.tHead.rows[0].cells[2].getAttribute('aria-sort')"), order, "the order is announced (aria-sort)")
 
 
 def check_texts(page):
@@ -326,7 +326,7 @@ def check_budget(page, photographs):
     largest = max(changes)
     largest_error = max(max(run["rmse"], budget["remainder"] or 0) for light in range(2)
                         for run, budget in zip(runs[light], budgets[light]))
-    expect(largest > 0.001, f"a budget with something in it: {largest}")
+    expect(largest > 0.001, f"the budget shows an error to explain: {largest}")
     for light, name in enumerate(light["name"] for light in methods[0]["lights"]):
         table = f"""[...document.querySelectorAll('table.sortable')].find(t => t.caption.textContent.includes(
             'Why each method is wrong under light \u201c{name}\u201d'))"""
@@ -381,7 +381,7 @@ def check_budget(page, photographs):
         expect(browser.ask("document.documentElement.scrollWidth <= innerWidth"), f"the budget is too wide: {window_name}")
         colors = browser.ask("""['better', 'worse'].map(name => getComputedStyle(
             document.querySelector('.bar-of-budget rect.' + name) ?? document.body).fill)""")
-        expect(colors[0] != colors[1], f"what helps has a colour of its own: {colors} ({window_name})")
+        expect(colors[0] != colors[1], f"bars of causes that help have another colour than the rest: {colors} ({window_name})")
         if photographs:
             browser.ask("document.getElementById('error-budget').scrollIntoView({behavior: 'instant'})")
             browser.photograph(photographs / f"budget-{window_name}.png")

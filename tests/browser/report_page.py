@@ -104,7 +104,7 @@ def check_readout(page):
                 same(value["seen"], None, "pcss has no masks")
         text = page.browser.ask("document.querySelector('#viewer-values tr:last-child td:last-child').textContent")
         others = sum(a != b for a, b in zip(values[-1]["seen"], values[1]["seen"]))
-        same("other than rays" in text, others > 0, f"{others} light samples seen other than by rays, and said: {text}")
+        same("other than rays" in text, others > 0, f"{others} light samples are seen otherwise than by rays, and the page says so: {text}")
     expect(any("other than rays" in t for t in [page_text(page, differing)]), "a pair that differs is named")
 
 
@@ -148,7 +148,7 @@ def check_keys(page):
     same((page.title(), page.browser.ask("document.getElementById('viewer-limit').value")), ("Error: pcss", "0.2"), "limit")
     # An address that names no view of this report is corrected.
     page.look("layer=nothing&a=99&b=x&light=-7&view=7&wipe=NaN&zoom=1e9&pixel=1e9,-4&limit=-1&constructor=1")
-    same(page.title(), "V: raytrace (reference)", "an address of nonsense")
+    same(page.title(), "V: raytrace (reference)", "an address with invalid values shows the default view")
     page.values()
 
 
@@ -343,7 +343,7 @@ def main():
                 check(page)
             check_live(page, scene)
             check_windows(page, photographs)
-            same(browser.problems, [], "the page complains, or asks for what is not in it")
+            same(browser.problems, [], "the page logs errors, or requests something outside itself")
     return verdict()
 
 

@@ -22,6 +22,6 @@ ninja -C "$work/own_method" >"$work/build.log" || { cat "$work/build.log"; exit 
 for name in gathering pcss; do grep -q "\"method\": \"$name\"" "$work/metrics.json" || { echo "no $name in $work/metrics.json"; exit 1; }; done
 [[ -s $work/compared/report.html ]]
 PENUMBRA=$work/installed/bin/penumbra
-"$PENUMBRA" --quiet render "$source/scenes/bunny.json" -o "$work/out.exr" --size 8x8  # finds its helper
+"$PENUMBRA" --quiet render "$source/scenes/bunny.json" -o "$work/out.exr" --size 8x8  # it must find its import helper
 repair=$work/installed/bin/penumbra-repair
 if [[ -e $repair ]]; then "$PENUMBRA" --quiet inspect "$source/scenes/room.json" --repair "$work/repaired.ply" >"$work/repair.log"; fi

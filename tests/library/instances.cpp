@@ -135,11 +135,12 @@ TEST_F(LibraryInstances, MoveAndLeaveTheMeshesTreesAlone) {
   EXPECT_EQ(built(moved), 0);
   EXPECT_NE(exact_bytes(moved), exact_bytes(first));
   EXPECT_EQ(exact_bytes(Renderer(renderer.scene()).render(with("copies"))), exact_bytes(moved));
-  EXPECT_EQ(exact_bytes(renderer.render(with("copies"))), exact_bytes(moved)) << "one way after the other";
+  EXPECT_EQ(exact_bytes(renderer.render(with("copies"))), exact_bytes(moved))
+      << "copies and shared instances must give the same, also one after the other";
   EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(moved));
   renderer.scene().set_transform(InstanceId{mesh, 4}, place(4));
-  EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(first)) << "the origin stays where it was";
-  // Positions belong to the mesh, and so to all instances; only its tree is made again.
+  EXPECT_EQ(exact_bytes(renderer.render(kShared)), exact_bytes(first)) << "the origin must not move with the instance";
+  // Positions belong to the mesh, and so to all instances; only its tree is built again.
   renderer.scene().set_positions(mesh, tent(1.1));
   const Picture higher = renderer.render(kShared);
   EXPECT_EQ(built(higher), 1);

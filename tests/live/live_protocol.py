@@ -51,10 +51,10 @@ def check_who_is_let_in(server):
     policy = headers["Content-Security-Policy"]
     expect("default-src 'none'" in policy and "frame-ancestors 'none'" in policy, f"the policy of the page: {policy}")
     same(headers["Cache-Control"], "no-store", "nothing is kept")
-    expect("http" not in server.get()[2].decode().replace("http://www.w3.org/2000/svg", ""), "the page asks nobody else")
+    expect("http" not in server.get()[2].decode().replace("http://www.w3.org/2000/svg", ""), "the page requests nothing from other servers")
     same(Client(server, token="x").status, 403, "a socket without the token")
     same(Client(server, Origin="http://evil.example").status, 403, "a socket of another page")
-    same(Client(server, Host="evil.example").status, 403, "a socket by another name")
+    same(Client(server, Host="evil.example").status, 403, "a socket opened under another host name")
     with socket.create_connection((server.parts.hostname, server.parts.port)) as raw:
         raw.sendall(b"GET / HTTP/1.1\r\nX: " + b"x" * 20000)
         raw.settimeout(20)
@@ -223,7 +223,7 @@ def check_outline(client, exr):
     for wanted in (0.3, 0.7):
         i = min(range(SIZE * SIZE), key=lambda i: abs(exr["key.V"][i] - wanted) + (exr["id"][i] == 0xffffffff))
         outline = client.pixel(i % SIZE, i // SIZE)["outline"]
-        same((outline["light"], outline["rim"], outline["whole"]), ("key", "square", True), "whose outline it is")
+        same((outline["light"], outline["rim"], outline["whole"]), ("key", "square", True), "the outline's light, rim and completeness")
         places = [((k + 0.5) / 20 - 1, (j + 0.5) / 20 - 1) for j in range(40) for k in range(40)]
         seen = sum(not any(is_inside(place, blocker) for blocker in outline["blockers"]) for place in places) / len(places)
         expect(abs(seen - exr["key.V"][i]) < 0.03, f"the outline leaves {seen}, and V is {exr['key.V'][i]}")
@@ -254,8 +254,8 @@ def check_moving(server):
     expect(stamps == sorted(stamps), f"pictures of newer and newer states: {stamps}")
     expect(len(set(stamps)) >= 5, f"pictures come while the camera moves: {stamps}")
     for message in frames:
-        same(message["images"][0]["type"], "image/png" if message["final"] else "image/jpeg", "how pictures come")
-        expect(message["files"][0][:2] == (b"\x89P" if message["final"] else b"\xff\xd8"), "and what they are")
+        same(message["images"][0]["type"], "image/png" if message["final"] else "image/jpeg", "final pictures are PNG, others JPEG")
+        expect(message["files"][0][:2] == (b"\x89P" if message["final"] else b"\xff\xd8"), "and the bytes are of that format")
     theirs = other.until(lambda message: message["type"] == "frame" and message["final"] and
                          message["stamps"].get(str(client.number)) == 159)
     same(theirs["files"], frame["files"], "the other client's picture")
@@ -263,7 +263,7 @@ def check_moving(server):
     other.send(type="samples", count=0, stamp=1)
     last = other.kind("state")
     expect(state and last["camera"]["eye"] == [6 * math.sin(0.5 + 59 / 60), 3, 6 * math.cos(0.5 + 59 / 60)], "the other client's camera")
-    expect(time.monotonic() - began < 60, "nobody waits for who does not read")
+    expect(time.monotonic() - began < 60, "a client that does not read delays no other")
     other.socket.close()  # closed in the middle of everything
     client.pixel(1, 1)
 
@@ -274,8 +274,8 @@ def check_host(scene):
         expect(server.url.startswith("http://127.0.0.2:"), f"the address: {server.url}")
         same(server.get()[0], 200, "the page on another address")
         same(server.get(token="")[0], 403, "no token there")
-        same(server.get(Host="127.0.0.3")[0], 403, "another address still")
-        same(server.get(Host="evil.example")[0], 403, "a name that was pointed there")
+        same(server.get(Host="127.0.0.3")[0], 403, "a third address is refused")
+        same(server.get(Host="evil.example")[0], 403, "a foreign host name that resolves to this address is refused")
         Client(server).begin()
     for host in ("0.0.0.0", "::", "here", "127.0.0.1:80", "224.0.0.1", ""):
         answer = subprocess.run([PROGRAM, "view", str(scene), "--no-browser", "--host", host], capture_output=True, text=True)

@@ -53,13 +53,13 @@ def check_meshes(server):
     same(meshes.header["shown"], meshes.header["triangles"], "all triangles are drawn")
     same(len(meshes.arrays["objects"]), meshes.header["triangles"], "each triangle has its object")
     same([one["name"] for one in meshes.header["objects"]], ["floor", "knot"], "the objects")
-    expect(max(meshes.arrays["triangles"]) < len(meshes.arrays["positions"]) / 3, "triangles are of the positions that are there")
+    expect(max(meshes.arrays["triangles"]) < len(meshes.arrays["positions"]) / 3, "every index of a triangle is a position")
     low = min(meshes.arrays["positions"][1::3]) + meshes.header["origin"][1]
     expect(abs(low - meshes.header["lower"][1]) < 1e-6 and abs(low) < 1e-6, f"the floor is at 0, not {low}")
     defects = ask(server, "defects")
     kinds = {one["what"]: one["count"] for one in defects.header["kinds"]}
     same(kinds.get("boundary edges"), 4, "the floor has an outline, the knot none")
-    same(len(defects.arrays["lines"]), 6 * len(defects.arrays["lineColors"]), "a colour each")
+    same(len(defects.arrays["lines"]), 6 * len(defects.arrays["lineColors"]), "each line has a colour")
 
 
 def check_shadows(server, scene, folder):
@@ -72,9 +72,9 @@ def check_shadows(server, scene, folder):
         names = ["wedge", "split", "everywhere", "empty"]
         same([names[number] for number in answer.arrays["outcomes"]], [wedge["outcome"] for wedge in known["wedges"]], "the outcome of each edge")
         bodies = answer.arrays["bodies"]
-        same(len(bodies) // 4, sum(wedge["outcome"] == "wedge" for wedge in known["wedges"]), "a body each")
+        same(len(bodies) // 4, sum(wedge["outcome"] == "wedge" for wedge in known["wedges"]), "each wedge has a body")
         same(len(answer.arrays["bodyTriangles"]), 9 * sum(bodies[1::4]), "their triangles")
-        same(len(answer.arrays["floorLines"]), 6 * sum(bodies[3::4]), "and what the floor cuts out of them")
+        same(len(answer.arrays["floorLines"]), 6 * sum(bodies[3::4]), "and the polygons in which the floor cuts them")
         expect(answer.header["silhouettes"] > 50, "silhouettes of the knot")
     # The planes of a wedge hold at the corners of its body, and the body reaches the floor.
     known = wedges(scene, folder, "--light", "key")
@@ -125,7 +125,7 @@ def check_refusals(server):
                        {"light": "key", "construction": "best"}, {"light": "key", "from": "behind"}):
         answer = ask(server, "shadows", **parameters)
         same(answer.status, 400, f"{parameters}")
-        expect(len(answer.text) > 10, "why")
+        expect(len(answer.text) > 10, "the refusal gives a reason")
     same(server.get("/space/meshes", token="")[0], 403, "meshes without the token")
     same(server.get("/three.js", token="x")[0], 403, "the script without the token")
     same(server.get("/space/", token=None)[0], 404, "nothing else")

@@ -130,7 +130,7 @@ def main():
         gone = "127.0.0.1:%d" % free.getsockname()[1]
         free.close()
         answer = run("render", scene, "-o", folder / "none.exr", "--tev", gone)
-        same((answer.returncode, "no tev answers" in answer.stderr), (4, True), "nobody listens")
+        same((answer.returncode, "no tev answers" in answer.stderr), (4, True), "the error if no viewer listens")
         same((folder / "none.exr").exists(), False, "and nothing is rendered")
         for wrong in ("tev", "127.0.0.1", "127.0.0.1:0", ":14158", "127.0.0.1:x"):
             same(run("render", scene, "-o", folder / "none.exr", "--tev", wrong).returncode, 2, wrong)

@@ -35,6 +35,6 @@ verdict() {
 verdict 0 "" 0
 for part in --self-test view-sample:engine=native "shadow-map " "compare "; do
   verdict 1 "$part" 139
-  verdict 0 "$part" 124  # as of `timeout`
+  verdict 0 "$part" 124  # 124 is the exit code of `timeout`
 done
 verdict 1 view-sample:engine=native other

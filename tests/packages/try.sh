@@ -71,6 +71,6 @@ folder=$(basename "$tarball" .tar.xz)
 as_stranger nothing tarball "'/opt/my programs/$folder'" || fail "the tarball where nothing is installed"
 cp "$here/../../scenes/room.json" "$work/made/a room.json"
 (cd "$work/made" && "$build/penumbra" render "a room.json" --size 96x96 -o "a room.exr" --quiet)
-cmp "$work/made/a room.exr" "$work/nothing/home/stranger/my pictures/a room.exr" || fail "other bytes than the built tree's"
+cmp "$work/made/a room.exr" "$work/nothing/home/stranger/my pictures/a room.exr" || fail "the bytes differ from those of the built tree"
 as_stranger installed driver "'/opt/my programs/$folder'" || fail "the tarball beside a driver"
 echo "all is as it should be"

@@ -10,7 +10,7 @@ set -euo pipefail
 
 here=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 mode=$1 source=$(cd -- "$2" && pwd)
-full='*Full:*Full.*:*Full/*:MapsTable.*'  # tests of that label are not run
+full='*Full:*Full.*:*Full/*:MapsTable.*'  # tests of label full, which are not run
 names=() files=() olds=() news=() targets=() filters=()
 
 say() { printf '%s\n' "$*" >&2; }
@@ -67,7 +67,7 @@ passes() {
 # stay untouched, so that their objects stay valid.
 copy_tree() {
   local file
-  mkdir -p "$work/tree/build"  # in it, as builds mostly are: so compiler caches know them
+  mkdir -p "$work/tree/build"  # inside the tree, as builds mostly are, so that compiler caches recognise the files
   (cd "$source" && find . \( -name .git -o -path ./out -o -path ./.cache -o -samefile "$work" -o \
     -type d -exec test -e {}/CMakeCache.txt \; \) -prune -o -type f -printf '%P\0') | sort -z >"$work/files"
   while IFS= read -r -d '' file; do
@@ -104,7 +104,7 @@ plant_all() {
   local needed tests
   needed=$(for i in "${wanted[@]}"; do echo "${targets[$i]}"; done | sort -u)
   # shellcheck disable=SC2086
-  build $needed || { tail -30 "$work/build.log" >&2; say "it does not build without a fault"; exit 1; }
+  build $needed || { tail -30 "$work/build.log" >&2; say "the tree does not build even without a fault"; exit 1; }
   tests=$(for i in "${wanted[@]}"; do echo "${targets[$i]} ${filters[$i]}"; done | sort -u)
   while IFS= read -r name; do find_nothing_unplanted "${name%% *}" "${name#* }"; done <<<"$tests"
   printf '| fault | place | tests | |\n| --- | --- | --- | --- |\n'
@@ -113,7 +113,7 @@ plant_all() {
     swap "$work/tree/${files[$i]}" "${olds[$i]}" "${news[$i]}"
     status=caught
     if ! build "${targets[$i]}"; then
-      status='**does not compile**'                       # a fault that no program can have
+      status='**does not compile**'                       # not a fault that a program could have
     elif passes "${targets[$i]}" "${filters[$i]}"; then
       status='**survives**'
     fi

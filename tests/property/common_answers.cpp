@@ -113,7 +113,7 @@ TEST_P(CommonAnswersProperty, HoldForEveryPointOfTheBox) {
   }
   EXPECT_GT(clear_count, 100U);
   EXPECT_GT(4 * clear_missed, rays_missed)
-      << "of " << rays_missed << " directions in which nothing is met, few are found";
+      << "of " << rays_missed << " directions that meet nothing, too few are found";
   if (floats.triangles.size() > 42) {
     EXPECT_GT(blocked_count, 10U);
   }

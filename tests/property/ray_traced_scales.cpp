@@ -97,7 +97,7 @@ TEST_P(Scales, ChangeNoBit) {
     const std::uint32_t visible = masks.visible_count(i);
     part += visible > 0 && visible < 32 ? 1 : 0;
   }
-  EXPECT_GT(part, stage.samples.size() / 20) << "a scene without penumbrae shows little";
+  EXPECT_GT(part, stage.samples.size() / 20) << "too few pixels are in penumbrae for this test to mean much";
   const std::vector<float> plain = plain_visibility(stage);
   // A sphere's points are rounded for each view sample, which would change them among the subnormal floats.
   const int lowest = stage.light.kind == visibility::LightKind::sphere ? -100 : -149 + kStep;

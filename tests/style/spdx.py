@@ -43,7 +43,7 @@ def main():
             at = 1 if lines and lines[0].startswith("#!") else 0
             path.write_text("".join([*lines[:at], comment, *lines[at:]]), encoding="utf-8")
             continue
-        print(f"{path.relative_to(source)}: no line \"{LINE}\" at its begin (tests/style/spdx.py . --write adds it)")
+        print(f"{path.relative_to(source)}: no line \"{LINE}\" at its beginning (tests/style/spdx.py . --write adds it)")
         missing += 1
     return 1 if missing else 0
 

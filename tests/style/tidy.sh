@@ -11,7 +11,7 @@
 # nothing to check. (The fifteen files of base took 11 CPU s as one; fourteen of other rooms took 140 s each, alone.)
 set -euo pipefail
 source=$(cd -- "$1" && pwd) build=$(cd -- "$2" && pwd) what=${3:-all}
-most=6  # of the changed sources: what a test can take that runs beside others
+most=6  # check at most this many changed sources: the test runs next to others
 tidy=$(command -v clang-tidy-14 || command -v clang-tidy || true)
 [[ $tidy ]] || { echo 'style: clang-tidy is not installed (packages.txt)' >&2; exit 1; }
 
@@ -40,11 +40,11 @@ sed -i "s,$alone/shaders,$build/shaders,g" "$alone/compile_commands.json"
 sources=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$alone/compile_commands.json" | sort -u | grep -F "$source/")
 options=()
 case $what in
-  all)  # of this tree, or files of it joined; findings in these count
+  all)  # sources of this tree, or joined files; findings in these count
     sources=$(grep -vF "$build/" <<<"$sources"; grep -F /Unity/ <<<"$sources")
     options=(--checks=-bugprone-suspicious-include "--header-filter=^$source/(app|areas|base|bench|compare|engines|hybrids|import|maps|mesh|network|reference|render|repair|scenes|selftest|session|tests|visibility|volumes|vsm)/") ;;
   changed)
-    wanted=$(changed_sources || true)  # no history, as in a shallow clone: nothing
+    wanted=$(changed_sources || true)  # nothing if there is no history, as in a shallow clone
     sources=$(grep -vF "$build/" <<<"$sources" | grep -Fxf <(sed "s,^,$source/," <<<"$wanted") || true)
     [[ $sources && $wanted ]] || { echo 'style: no source changed'; exit 77; }
     if (($(wc -l <<<"$sources") > most)); then

@@ -144,7 +144,7 @@ class Twins(unittest.TestCase):
         for name in CASTERS:
             one, two = self.check(name, 1), self.check(name, 2)
             if name == "two plates":
-                self.assertGreater(sum(two[p] < one[p] for p in one.keys() & two.keys()), 5, "the lower plate goes on")
+                self.assertGreater(sum(two[p] < one[p] for p in one.keys() & two.keys()), 5, "with two layers the lower plate continues under the upper one")
 
     def test_walls(self):
         for name in ("tilted plate", "steep plate", "board"):

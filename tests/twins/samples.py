@@ -99,7 +99,7 @@ class Twins(unittest.TestCase):
             print(f"  bound=0.2: off by {off.max():.4f}, {fewer['steps']} of {counters['steps']} steps")
             self.assertLessEqual(off.max(), 0.2 + 1e-6)
             self.assertLess(fewer["steps"], 0.95 * counters["steps"])
-        self.assertGreater(differ, 10, "a texel's centre is not the receiver")
+        self.assertGreater(differ, 10, "V at a texel's centre must differ from V at the receiver somewhere")
 
 
 if __name__ == "__main__":

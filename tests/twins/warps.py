@@ -219,7 +219,7 @@ class Twins(unittest.TestCase):
                 otherwise += moved
                 # Outlines within 1/256 texel of a centre are left to the rasteriser.
                 self.assertLessEqual(len(off), 1, (fit, name, off[:5]))
-        self.assertGreater(otherwise, 30, "another map would be found")
+        self.assertGreater(otherwise, 30, "a wrong map would be noticed")
 
     def test_lispsm(self):
         self.check("lispsm", Perspective)

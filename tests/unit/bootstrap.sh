@@ -54,7 +54,7 @@ expect 'install_packages all' 'removed half broken unknown of-tests'
 expect 'install_packages full' 'removed half broken unknown of-tests of-long-tests'
 printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' 'ii  there-too' >"$work/dpkg"
 expect install_packages ''
-[[ ! -s $work/said ]] || { echo "not quiet where nothing is missing" >&2; failed=1; }
+[[ ! -s $work/said ]] || { echo "prints something although nothing is missing" >&2; failed=1; }
 
 # Package lists that are too old: the script says that it fetches them, and reports the progress of a slow installation.
 printf '%s\n' 'ii  there' 'hi  held' 'ii  removed' 'ii  half' 'ii  broken' 'ii  unknown' >"$work/dpkg"
@@ -72,13 +72,13 @@ rm -f "$work/apt"
 (root=$WORK/root && source "$source/cmake/bootstrap.sh" && install_packages) 2>"$work/said" || { cat "$work/said" >&2; failed=1; }
 [[ $(wc -l <"$work/apt") == 3 ]] || { echo "apt-get is not called three times" >&2; failed=1; }
 for said in 'installing 1 packages and what they need: there-too' 'apt-get update' 'installing: 1 packages fetched, 0 unpacked'; do
-  grep -qF "$said" "$work/said" || { echo "not said: $said" >&2; cat "$work/said" >&2; failed=1; }
+  grep -qF "$said" "$work/said" || { echo "does not print: $said" >&2; cat "$work/said" >&2; failed=1; }
 done
 
 # Lines pass through, and so does the exit status of the pipeline's first command; silence is broken.
 # shellcheck disable=SC2034
 (root=$WORK/root && source "$source/cmake/bootstrap.sh" && (echo a; sleep 9; echo b; exit 7) | never_silent 'goes on') \
-  >"$work/lines" 2>"$work/said" && { echo "a failure gets lost" >&2; failed=1; }
-[[ $(<"$work/lines") == $'a\nb' ]] || { echo "lines get lost" >&2; failed=1; }
+  >"$work/lines" 2>"$work/said" && { echo "a command's failure is lost" >&2; failed=1; }
+[[ $(<"$work/lines") == $'a\nb' ]] || { echo "lines of the output are lost" >&2; failed=1; }
 grep -q 'goes on' "$work/said" || { echo "nothing is said for nine seconds" >&2; failed=1; }
 exit $failed

@@ -24,14 +24,14 @@ TEST(DidYouMean, LettersMayBeLargeOrExchanged) {
   EXPECT_EQ(did_you_mean("panle", {"Floor", "Panel"}), "; did you mean Panel?");
   EXPECT_EQ(did_you_mean("PCSS", {"pcf", "pcss"}), "; did you mean pcss?");
   EXPECT_EQ(did_you_mean("kye", {"key"}), "; did you mean key?");
-  EXPECT_EQ(did_you_mean("eyk", {"key"}), "") << "two of three";
+  EXPECT_EQ(did_you_mean("eyk", {"key"}), "") << "two of three letters differ: no suggestion";
 }
 
 TEST(DidYouMean, LastWordsAreNearerThanLetters) {
   const std::vector<std::string> names = {"--sample-seed", "--light-samples", "--pixel-samples", "--samples-of"};
   EXPECT_EQ(did_you_mean("--samples", names), "; did you mean --light-samples?");
   EXPECT_EQ(did_you_mean("--sample-sed", names), "; did you mean --sample-seed?");
-  EXPECT_EQ(did_you_mean("--bits", {"--superrabbits"}), "") << "no word of its own";
+  EXPECT_EQ(did_you_mean("--bits", {"--superrabbits"}), "") << "a part of another word is no suggestion";
 }
 
 TEST(DidYouMean, OfTwoAsNearTheFirst) {

@@ -299,7 +299,7 @@ TEST_F(Exr, DwaaIsLossyForColoursAlone) {
 
   std::erase_if(image.channels, [](const ExrChannel& channel) { return channel.exact; });
   write_exr(file(), image);
-  EXPECT_EQ(Imf::MultiPartInputFile(file().c_str()).parts(), 1) << "nothing to keep apart";
+  EXPECT_EQ(Imf::MultiPartInputFile(file().c_str()).parts(), 1) << "without exact channels, one part is enough";
 }
 
 TEST_F(Exr, SameImageGivesSameBytes) {

@@ -31,7 +31,7 @@ void* new_or_kept(KeptArrays& arrays, std::size_t bytes) {
 TEST(KeptArrays, AreForTheNextOfAboutTheirSize) {
   KeptArrays arrays;
   void* const early = new_or_kept(arrays, 8 * kEighth);
-  EXPECT_FALSE(arrays.keep(early, 8 * kEighth)) << "not asked to";
+  EXPECT_FALSE(arrays.keep(early, 8 * kEighth)) << "arrays are not kept before keeping is enabled";
   std::free(early);
   arrays.start_keeping();
   void* const small = new_or_kept(arrays, 8 * kEighth);
@@ -39,12 +39,12 @@ TEST(KeptArrays, AreForTheNextOfAboutTheirSize) {
   EXPECT_TRUE(arrays.keep(large, 12 * kEighth));
   EXPECT_TRUE(arrays.keep(small, 8 * kEighth));
   EXPECT_EQ(arrays.bytes(), 20 * kEighth);
-  EXPECT_EQ(arrays.take(8 * kEighth), small) << "the smallest that does";
-  EXPECT_EQ(arrays.take(8 * kEighth), large) << "half as large again";
+  EXPECT_EQ(arrays.take(8 * kEighth), small) << "the smallest array that is large enough";
+  EXPECT_EQ(arrays.take(8 * kEighth), large) << "an array 1.5 times as large may still be used";
   EXPECT_EQ(arrays.bytes(), 0U);
   EXPECT_TRUE(arrays.keep(large, 12 * kEighth));
-  EXPECT_EQ(arrays.take(8 * kEighth - 8), nullptr) << "more than half as large again";
-  EXPECT_EQ(arrays.bytes(), 0U) << "no room for it beside 16 eighths in use, of 20";
+  EXPECT_EQ(arrays.take(8 * kEighth - 8), nullptr) << "an array more than 1.5 times as large is not used";
+  EXPECT_EQ(arrays.bytes(), 0U) << "the kept array is freed: with 16 of 20 eighths in use there is no room for it";
   arrays.settle(8 * kEighth - 8, 0);
   EXPECT_TRUE(arrays.keep(small, 8 * kEighth));
   arrays.free_all();
@@ -122,7 +122,7 @@ TEST(KeptArrays, AreThoseOfEveryList) {
   list = std::vector<char>();
   EXPECT_GT(kept_arrays().bytes(), 0U);
   EXPECT_THROW(static_cast<void>(::operator new(SIZE_MAX / 2)), std::bad_alloc);
-  EXPECT_EQ(kept_arrays().bytes(), 0U) << "given back before memory is said to be out";
+  EXPECT_EQ(kept_arrays().bytes(), 0U) << "kept arrays must be freed before bad_alloc is thrown";
 }
 #endif
 

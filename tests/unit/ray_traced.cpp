@@ -98,7 +98,7 @@ TEST(RayTraced, TilesRepeatsAndPacketsAgree) {
   for (const std::uint32_t count : {1u, 31u, 100u, 4096u}) {
     const Stage setup(board_over_floor(), 24, 24, {count, 0, 0, SamplePattern::sobol, 9});
     const Masks whole = trace(setup);
-    EXPECT_EQ(whole.words, trace(setup).words) << "the same again";
+    EXPECT_EQ(whole.words, trace(setup).words) << "a second run must give the same bits";
     EXPECT_EQ(whole.words, trace(setup, {}, 5).words) << "five rows at a time";
     for (const char* packet : {"1", "4", "8", "16"}) {
       const Masks other = trace(setup, {{"packet", packet}});

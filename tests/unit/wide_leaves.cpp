@@ -34,12 +34,12 @@ TEST(WideLeaves, OfFewAreMadeAtOnceAndOfManyWhenAskedFor) {
     });
     EXPECT_EQ(leaves.size(), count);
     for (std::size_t i = 0; i <= count; ++i) leaves.fetch(i);
-    EXPECT_EQ(made, count == kMany ? 0 : count) << "to ask memory for them makes none";
+    EXPECT_EQ(made, count == kMany ? 0 : count) << "prefetching must not make leaves";
     if (count == 0) continue;
     EXPECT_EQ(std::as_const(leaves)[count - 1].value, value_of(count - 1));
-    EXPECT_LT(made, count == kMany ? 100 : count + 1) << "with its neighbours";
+    EXPECT_LT(made, count == kMany ? 100 : count + 1) << "only the leaf's own block may be made";
     for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(leaves[i].value, value_of(i));
-    EXPECT_EQ(made, count) << "each once";
+    EXPECT_EQ(made, count) << "each leaf must be made exactly once";
   }
 }
 
@@ -89,7 +89,7 @@ TEST(WideLeaves, OfACopyAreItsOwn) {
     leaves = {};
     EXPECT_EQ(leaves.size(), 0U);
     EXPECT_EQ(copy[0].value, 9U);
-    EXPECT_EQ(copy[count - 1].value, 7U) << "made from what the copy holds, too";
+    EXPECT_EQ(copy[count - 1].value, 7U) << "the copy must make its leaves from its own data";
     const Leaves moved = std::move(copy);
     EXPECT_EQ(moved[0].value, 9U);
     EXPECT_EQ(moved[count - 1].value, 7U);

@@ -57,8 +57,9 @@ Light make_part(const Part& part, const scenes::LightShape& shape, const glm::dv
   const scenes::AreaLight& source = scene.lights.at(light_index);
   const std::optional<LightKind> kind = scenes::kind_of(shape);
   if (!kind) {
-    throw InputError("light \"{}\" consists of {} pieces, but this result needs a light of one piece; take another light",
-                     source.name, std::get<scenes::Pieces>(shape).pieces.size());
+    throw InputError(
+        "light \"{}\" consists of {} pieces, but this result needs a light of one piece; take another light",
+        source.name, std::get<scenes::Pieces>(shape).pieces.size());
   }
   const SampleLayout layout = layout_of(request);
   Light light;

@@ -155,10 +155,11 @@ SeenPart part_of(const PlacedMeshes& meshes, TriangleBits& seen) {
   part.scene.origin = meshes.origin();
   if (seen.count() == 0) seen.set(0);  // nothing is in sight, but a scene needs a triangle
   const std::uint64_t count = seen.count();
-  require_memory(count * sizeof(std::uint32_t) + mesh::soup_bytes(count, 2 * count),
-                 fmt::format("the visible part of a scene of {} triangles, with the triangles that may shade it ({} triangles),",
-                             meshes.triangles(), count),
-                 "choose a smaller --size, or a camera that sees less");
+  require_memory(
+      count * sizeof(std::uint32_t) + mesh::soup_bytes(count, 2 * count),
+      fmt::format("the visible part of a scene of {} triangles, with the triangles that may shade it ({} triangles),",
+                  meshes.triangles(), count),
+      "choose a smaller --size, or a camera that sees less");
   part.numbers.reserve(count);
   part.scene.soup.triangles.reserve(count);
   part.scene.soup.object.reserve(count);

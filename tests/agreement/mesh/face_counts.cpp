@@ -66,7 +66,8 @@ TEST(MeshFaceCounts, EverySurfaceComesOut) {
         else
           EXPECT_NE(surfaces, *count) << entry.path() << " is on the list of differences: " << known->second;
       } catch (const std::exception& error) {
-        ADD_FAILURE() << entry.path() << ": read, but not to be counted: " << error.what();
+        ADD_FAILURE() << entry.path()
+                      << ": the reader accepts the file, but this test cannot count its faces: " << error.what();
       }
     }
   }

@@ -77,7 +77,7 @@ TEST(CoverageLights, TexturedLayersAddUp) {
   }
   fmt::print("textured: {} partly hidden, {} moved, sums off by {:.1e} at most\n", found.part, found.moved, found.most);
   EXPECT_GT(found.part, 250);
-  EXPECT_LT(found.most, 1e-9) << "what is upright is rare: the sums are far better than their bound";
+  EXPECT_LT(found.most, 1e-9) << "upright walks are rare, so the sums are far better than their bound";
 }
 
 TEST(CoverageLights, SpheresAreDisksThatFaceTheReceiver) {

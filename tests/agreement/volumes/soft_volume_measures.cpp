@@ -114,7 +114,7 @@ TEST_F(SoftVolumeMeasures, TexturesAreIntegratedTexelByTexel) {
     if (width > 1) continue;
     scene.lights[0].texture.reset();
     const Errors plain = tests::errors_of(found, SoftStage(scene, device(), 40, 30).twin(Viewer::center));
-    EXPECT_LE(plain.largest, 1e-6) << "an even texture is none";
+    EXPECT_LE(plain.largest, 1e-6) << "a texture of one texel must change nothing";
   }
 }
 

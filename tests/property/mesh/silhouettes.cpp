@@ -164,7 +164,8 @@ TEST(Silhouettes, OfClosedSurfacesAreTwofold) {
   const EdgeGraph graph = build_edge_graph(view);
   EXPECT_TRUE(silhouette_edges(view, graph, {0.1, 0.2, 0.3}).empty()) << "from within a convex body";
   EXPECT_EQ(silhouette_edges(view, graph, {9, 8, 7}).size(), 6u) << "a box from a corner: a hexagon";
-  EXPECT_EQ(silhouette_edges(view, graph, {9, 0.5, 0.5}).size(), 4u) << "a box from before a face: a quadrilateral";
+  EXPECT_EQ(silhouette_edges(view, graph, {9, 0.5, 0.5}).size(), 4u)
+      << "a box seen from in front of a face: a quadrilateral";
 }
 
 TEST(Silhouettes, OfAnOpenSurfaceAreItsBorder) {
@@ -177,7 +178,7 @@ TEST(Silhouettes, OfAnOpenSurfaceAreItsBorder) {
     EXPECT_EQ(std::abs(s.multiplicity), 1);
     EXPECT_EQ(graph.around(s.edge).size(), 1u);
   }
-  EXPECT_TRUE(silhouette_edges(view, graph, {9, 0, 9}).empty()) << "edge-on nothing counts";
+  EXPECT_TRUE(silhouette_edges(view, graph, {9, 0, 9}).empty()) << "a sheet seen edge-on has no silhouettes";
 }
 
 TEST(Silhouettes, BooksOfPagesCountTheirPages) {
@@ -266,7 +267,7 @@ TEST(PossibleSilhouettes, OfAFlatGridAreItsBorder) {
   for (const std::uint32_t e : possible) EXPECT_EQ(graph.around(e).size(), 1u);
   const std::vector<glm::dvec3> within = {{-1, 0, -1}, {1, 0, 1}, {0, 0, 3}};
   EXPECT_TRUE(possible_silhouette_edges(view, graph, within).empty())
-      << "a hull in the grid's plane sees nothing of it";
+      << "a hull in the grid's plane sees the grid edge-on: no silhouettes";
 }
 
 TEST(PossibleSilhouettes, PagesOfAFlatBookCancelInPairs) {

@@ -155,7 +155,8 @@ TEST_P(AlphaOnLattice, TexelsDecide) {
           certain &= there.has_value();
           visible &= !there.value_or(false);
         }
-        ASSERT_EQ((masks[pixel] >> j & 1u) != 0, is_visible(floats, pixel, j)) << "both exact, certain or not";
+        ASSERT_EQ((masks[pixel] >> j & 1u) != 0, is_visible(floats, pixel, j))
+            << "both decisions are exact, also on borders of texels";
         if (!certain) continue;
         ASSERT_EQ((masks[pixel] >> j & 1u) != 0, visible)
             << "seed " << seed << " round " << round << " pixel " << pixel << " sample " << j;
@@ -195,7 +196,7 @@ struct UnderPanes {
     const AlphaFilter filter(floats);
     EXPECT_EQ(filter.dims(light), true);
     filter.filter(samples, light, 0, {mask, transmittances, dimmed});
-    EXPECT_EQ(visible_share(light, mask), 1) << "bits ignore what is translucent";
+    EXPECT_EQ(visible_share(light, mask), 1) << "translucent surfaces must not change bits";
     return dimmed[0] != 0 ? dimmed_share(light, mask, transmittances, glm::vec3(0, 1, 0)) : 1;
   }
 };
@@ -207,14 +208,14 @@ TEST(AlphaFilters, PanesMultiply) {
   one.add(2, 0.5);
   EXPECT_FLOAT_EQ(one.share(), 0.35f);
   one.add(3, 1);
-  EXPECT_EQ(one.share(), 0) << "an alpha of 1 lets nothing through, and is no bit's business all the same";
+  EXPECT_EQ(one.share(), 0) << "a pane with an alpha of 1 blocks all light, though bits ignore it";
 }
 
 /// A pane at half the light's height that ends below the light's middle covers, as seen from below, half of the light.
 TEST(AlphaFilters, APaneMayHideAPart) {
   UnderPanes half;
   half.add(2, 0.6, {4, 0, 0}, 4);
-  EXPECT_NEAR(half.share(), 1 - 0.6 / 2, 0.6 / 32 + 1e-6) << "one of 16 columns, cut in the middle of cells";
+  EXPECT_NEAR(half.share(), 1 - 0.6 / 2, 0.6 / 32 + 1e-6) << "at most half of one of 16 columns is wrong";
 }
 
 TEST(AlphaFilters, VerticesAndFactorsMultiply) {

@@ -101,7 +101,7 @@ TEST(AlphaReaches, SpecksThatReachIntoThePyramidByATenThousandth) {
       if (light.exact) {
         EXPECT_FALSE(floor.reached_by(speck(1.0001))) << i;
       } else {
-        EXPECT_FALSE(floor.reached_by(speck(1.5))) << i << ": a square around it";
+        EXPECT_FALSE(floor.reached_by(speck(1.5))) << i << ": the search uses a square around the outline";
       }
     }
   }
@@ -168,7 +168,7 @@ TEST(AlphaReaches, WhateverALightSampleMeets) {
     }
     EXPECT_GT(met, 1000u);
     if (light.exact) {
-      EXPECT_LE(foreseen, 2 * met) << "specks that touch the light between light samples, and hardly more";
+      EXPECT_LE(foreseen, 2 * met) << "only specks that touch the light between light samples may be found in addition";
     }
   }
 }

@@ -143,7 +143,8 @@ TEST(PaneLayers, AreBeforeWhatIsSeenAndInOrder) {
   const SceneFloats floats = make_scene_floats(card.scene);
   const PinholeCamera view = make_camera(tests::camera({0, 0, 6}, {0, 0, 0}, 30), floats.origin, 21, 21);
   const ViewSamples seen = brute_force_view_samples(floats, view);
-  for (const std::int32_t triangle : seen.triangle) EXPECT_TRUE(triangle < 4) << "panes carry nothing";
+  for (const std::int32_t triangle : seen.triangle)
+    EXPECT_TRUE(triangle < 4) << "a pane must not be a view sample's surface";
   const Panes panes(floats, seen);
   ASSERT_EQ(panes.depth(), 2u);
   const std::array layers{panes.layer(0), panes.layer(1)};

@@ -82,7 +82,8 @@ TEST_P(PairTruthOnLattice, SegmentAgainstOneTriangle) {
     const Meeting meeting = segment_meets_triangle(p, l, corners, light);
     ASSERT_EQ(meeting.meets, meets(p, l, corners, light, kEpsilon)) << "round " << round;
     if (!meeting.zero_predicate) {
-      ASSERT_EQ(meeting.meets, meets(p, l, corners, light, -kEpsilon)) << "no zero, no matter how it is read";
+      ASSERT_EQ(meeting.meets, meets(p, l, corners, light, -kEpsilon))
+          << "without a zero predicate, the direction of the perturbation must not matter";
     }
     const std::array<glm::vec3, 3> turned = {corners[2], corners[1], corners[0]};
     ASSERT_EQ(segment_meets_triangle(p, l, turned, light).meets, meeting.meets) << "round " << round;

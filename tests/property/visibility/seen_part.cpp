@@ -137,7 +137,8 @@ TEST(SeenPart, OfSomeRowsIsNoMoreThanTheWhole) {
   for (const Tile& rows : {Tile{4, 7}, Tile{11, 4}}) {
     const std::vector<std::uint32_t> more = numbers({&light, 1}, rows);
     EXPECT_LT(more.size(), all.size());
-    EXPECT_TRUE(std::ranges::includes(all, numbers({}, rows))) << "what is seen, in no light";
+    EXPECT_TRUE(std::ranges::includes(all, numbers({}, rows)))
+        << "visible triangles are included without any light, too";
     std::vector<std::uint32_t> before = std::exchange(together, {});
     std::ranges::set_union(before, more, std::back_inserter(together));
   }

@@ -79,7 +79,7 @@ void check(const SceneFloats& floats) {
   }
   for (const int seen : walk.node_seen) EXPECT_EQ(seen, 1);
   for (const int seen : walk.leaf_seen) EXPECT_EQ(seen, 1);
-  EXPECT_EQ(walk.deepest, tree.depth) << "the shaders' stack is made for it";
+  EXPECT_EQ(walk.deepest, tree.depth) << "the shaders' stack is as deep as this number";
 }
 
 scenes::Scene with(const std::vector<tests::Corners>& triangles) {

@@ -92,7 +92,7 @@ inline void expect_within(const char* name, const Use& most, double planted) {
              most.error, most.bound);
   testing::Test::RecordProperty(fmt::format("percent_of_bound_{}", name), fmt::format("{:.1f}", 100 * most.of_bound));
   EXPECT_LT(most.of_bound, 1);
-  EXPECT_GT(most.of_bound, planted) << "planted_faults cuts it to that";
+  EXPECT_GT(most.of_bound, planted) << "the cut of the bound in planted_faults would not be noticed";
 }
 
 }  // namespace penumbra::volumes::tests_of_rows

@@ -163,7 +163,7 @@ TEST(RowSweep, StepsAtTheLeftSide) {
   const RowSweep::Area area = sweep({kSide, kSide, edges, steps, 0, nullptr});
   EXPECT_NEAR(area.visible, kSide * kSide - 0.5 * (2 + 3) * 8, 1e-13);
   EXPECT_NEAR(area.impossible, 0, 1e-13);
-  EXPECT_LT(area.disorder, 16 * 0x1p-48 * kSide * kSide) << "of rounding alone";
+  EXPECT_LT(area.disorder, 16 * 0x1p-48 * kSide * kSide) << "only rounding may cause disorder";
 }
 
 }  // namespace

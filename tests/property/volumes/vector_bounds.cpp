@@ -112,7 +112,7 @@ TEST(VectorBounds, PlacesOfPointsOnTheLight) {
              most.bound);
   RecordProperty("percent_of_bound_X", fmt::format("{:.1f}", 100 * most.of_bound));
   EXPECT_LT(most.of_bound, 1);
-  EXPECT_GT(most.of_bound, 0.02) << "a bound that is never used is no bound of this error";
+  EXPECT_GT(most.of_bound, 0.02) << "hardly any of the bound is used: the search measures another error";
 }
 
 /// One view sample under a light, and a triangle with an edge that passes one of the light samples within rounding.
@@ -190,7 +190,7 @@ TEST_F(VectorCrossings, OnTheWrongSideOfALightSample) {
   fmt::print("crossings: {:.1f} % of the bound used\n", 100 * used);
   RecordProperty("percent_of_bound_crossing", fmt::format("{:.1f}", 100 * used));
   EXPECT_LT(used, 1);
-  EXPECT_GT(used, 0.02) << "planted_faults cuts it to less";
+  EXPECT_GT(used, 0.02) << "planted_faults cuts the bound to less than this share, which would not be noticed";
 }
 
 }  // namespace

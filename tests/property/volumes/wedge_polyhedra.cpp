@@ -35,7 +35,7 @@ TEST(Polyhedra, FlatAndEmpty) {
   EXPECT_EQ(extent({1, 0, 0, -2}), Extent::flat) << "touches a face";
   EXPECT_EQ(extent({1, 1, 1, -6}), Extent::flat) << "touches a corner";
   EXPECT_EQ(extent({1, 0, 0, -2.5}), Extent::empty);
-  EXPECT_EQ(extent({1, 0, 0, 2}), Extent::solid) << "holds all of it";
+  EXPECT_EQ(extent({1, 0, 0, 2}), Extent::solid) << "the half-space contains the whole polyhedron";
 }
 
 /// A third is not a double: the corner is rational, and the plane's sign there is exactly zero.

@@ -243,7 +243,7 @@ TEST_P(Metamorphic, CutAtPointsExactlyOnThem) {
       ASSERT_NE(after.plane[index], SceneFloats::kNoPlane) << name;
       for (const glm::vec3& corner : after.corners(index)) {
         const auto [a, b, c] = before.corners(whole[i]);
-        ASSERT_EQ(visibility::side_of_plane(a, b, c, corner), visibility::Side::on) << name << ": cut with a rounding";
+        ASSERT_EQ(visibility::side_of_plane(a, b, c, corner), visibility::Side::on) << name << ": the cut is not exact";
       }
     }
     const Picture plain = picture(before, scene);

@@ -161,7 +161,7 @@ TEST(Beauty, ASphereShinesOverItsSolidAngle) {
   // intensity.
   EXPECT_FLOAT_EQ(colors[0].r, static_cast<float>(0.5 * 10 / 1600));
   EXPECT_FLOAT_EQ(colors[1].r, static_cast<float>(0.5 * 10 * 0.8 / 2500));
-  EXPECT_EQ(colors[2].r, 0) << "in the sphere";
+  EXPECT_EQ(colors[2].r, 0) << "a point inside the sphere gets no light";
 }
 
 /// A sun of radiance L gives a surface that faces it π sin²(angle / 2) L; a surface turned by 60° gets half of that.

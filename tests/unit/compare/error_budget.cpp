@@ -33,11 +33,11 @@ TEST(ErrorBudget, WhereChangesDoNotHalveTheLastRunCounts) {
   const Limit slow = limit_of_power(0.25, 0.5, 0.5);
   EXPECT_FALSE(slow.reached);
   EXPECT_EQ(slow.value, 0.25 + 0.5 * std::pow(0.25, 0.5));
-  EXPECT_FALSE(limit_of(0.3, 0.3, 0.2).reached) << "it begins to change at the end";
+  EXPECT_FALSE(limit_of(0.3, 0.3, 0.2).reached) << "not reached: the value changes only in the last step";
   EXPECT_TRUE(limit_of(0.3, 0.2, 0.2).reached);
   EXPECT_EQ(limit_of(0.3, 0.2, 0.2).value, 0.2);
-  EXPECT_EQ(limit_of(1, 0.5, 0.1).value, 0.1) << "a change of 0.4 after one of 0.5";
-  EXPECT_EQ(limit_of(1, 0.4, 0.05).value, 0) << "no mean of squares is below 0";
+  EXPECT_EQ(limit_of(1, 0.5, 0.1).value, 0.1) << "the changes 0.5 and 0.4 decrease too slowly to extrapolate";
+  EXPECT_EQ(limit_of(1, 0.4, 0.05).value, 0) << "an extrapolated mean of squares is not negative";
   // The sequence swings around 0.25: + 0.08, − 0.04, + 0.02.
   EXPECT_NEAR(limit_of(0.33, 0.21, 0.27).value, 0.25, 1e-14);
 }
@@ -65,7 +65,7 @@ TEST(ErrorBudget, ARepairIsTheChangeToWhereItsRunsLead) {
   EXPECT_TRUE(limit.second);
   // If the part has a first run of its own, the limit is that of its last three runs.
   const auto own = change(part_of({0.2, std::sqrt(0.02), 0.1}), RepairEnd::limit);
-  EXPECT_NEAR(own.first.value(), 0 - base, 1e-7) << "the root of a rounding error";
+  EXPECT_NEAR(own.first.value(), 0 - base, 1e-7) << "the square root of a rounding error";
   // Runs that failed end the sequence.
   EXPECT_EQ(change(part_of({0.07, std::nullopt}), RepairEnd::limit), std::pair(std::optional(0.07 - base), false));
   EXPECT_EQ(change(part_of({std::nullopt}), RepairEnd::last), std::pair(std::optional<double>(), false));

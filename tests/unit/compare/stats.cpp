@@ -48,7 +48,7 @@ TEST(Seconds, AddUpToTheirPhases) {
   EXPECT_EQ(seconds.sum(), 0);
   seconds.load = 1, seconds.mesh = 2, seconds.view = 4, seconds.light = 8, seconds.evaluate = 16;
   seconds.warmup = 1000, seconds.total = 1000;
-  EXPECT_EQ(seconds.sum(), 31) << "what was not measured counts as nothing";
+  EXPECT_EQ(seconds.sum(), 31) << "times that were not measured count as 0";
   seconds.beauty = 32, seconds.write = 64;
   EXPECT_EQ(seconds.sum(), 127);
 }
@@ -127,7 +127,7 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   const auto json = to_json(metrics);
   EXPECT_EQ(keys_of(json), (std::vector<std::string>{"reference", "judgedPixels", "horizonPixels", "sameSamples",
                                                      "methods", "leftOut"}));
-  EXPECT_TRUE(json["sameSamples"].is_null()) << "the reference looked at the methods' own";
+  EXPECT_TRUE(json["sameSamples"].is_null()) << "the reference already used the methods' light samples";
   EXPECT_EQ(json["reference"]["method"], "pcss");
   const auto& first = json["methods"][0];
   EXPECT_EQ(first["method"], "pcss");
@@ -139,7 +139,7 @@ TEST(MetricsJson, HasTheNamesOfTheInterface) {
   EXPECT_EQ(first["pairs"], 300);
   EXPECT_EQ(first["pairsAll"], 400);
   EXPECT_EQ(first["pairsDiffering"], 2);
-  EXPECT_TRUE(first["pairsZeroPredicate"].is_null()) << "nothing was decided exactly";
+  EXPECT_TRUE(first["pairsZeroPredicate"].is_null()) << "null: this reference decides no pair exactly";
   const auto& second = json["methods"][1];
   for (const char* key : {"error", "beautyError", "pairs", "pairsAll", "pairsDiffering", "pairsZeroPredicate"}) {
     EXPECT_TRUE(second.contains(key) && second[key].is_null()) << key;
@@ -201,7 +201,7 @@ TEST(MetricsJson, JudgesEachLight) {
   EXPECT_EQ(json["sameSamples"]["lights"][0]["error"]["rmse"], 0.0625);
   const auto& method = json["methods"][0];
   EXPECT_EQ(method["errorAllLights"]["rmse"], 0.5);
-  EXPECT_TRUE(method["pairs"].is_null()) << "the reference's alone, which looked at others";
+  EXPECT_TRUE(method["pairs"].is_null()) << "null: the reference used other light samples";
   ASSERT_EQ(method["lights"].size(), 2u);
   EXPECT_EQ(keys_of(method["lights"][0]),
             (std::vector<std::string>{"name", "judgedPixels", "horizonPixels", "error", "horizonError", "classes",

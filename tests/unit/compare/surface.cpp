@@ -55,7 +55,8 @@ struct Surface {
 
 TEST(Surface, ColoursOfVerticesAreLinear) {
   Surface stage({{1, 1, 0}, {0, 0, 0}, {2, 0, 0}});
-  EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, false).colors.empty()) << "objects' colours do";
+  EXPECT_TRUE(look_at(stage.scene, stage.floats, stage.samples, false).colors.empty())
+      << "empty: the colours of objects are enough";
   stage.scene.looks.colors = {{1, 1, 1, 1}, {0, 1, 1, 1}, {0.5f, 0, 1, 1}};
   const auto colors = look_at(stage.scene, stage.floats, stage.samples, false).colors;
   EXPECT_LT(glm::distance(colors[0], glm::dvec3(0.5 + 0.125, 0.5 * 0.75, 0.25)), 1e-15);
@@ -149,8 +150,8 @@ TEST(Surface, CosinesAreThoseOfTheNormalsGiven) {
   EXPECT_NEAR(by_visibility[1].x, 0.8 * 0.5 * whole, 2e-6 * whole);
   EXPECT_EQ(by_visibility[2].x, 0);
   const auto by_form_factors = shade({.visibility = v, .form_factors = form_factors});
-  EXPECT_EQ(by_form_factors[0].x, 7) << "its triangle's own normal: as the method has it";
-  EXPECT_NEAR(by_form_factors[1].x, 0.8 * whole, 2e-6 * whole) << "more than all there is: all";
+  EXPECT_EQ(by_form_factors[0].x, 7) << "with the triangle's own normal, the method's form factor is used";
+  EXPECT_NEAR(by_form_factors[1].x, 0.8 * whole, 2e-6 * whole) << "a form factor above the unshadowed one is cut to it";
   const std::vector<glm::dvec3> quarter(3, glm::dvec3(0.25 * whole));
   EXPECT_NEAR(shade({.visibility = v, .form_factors = quarter})[1].x, 0.8 * 0.25 * whole, 2e-6 * whole);
 }

@@ -97,7 +97,7 @@ TEST(Emitter, ACubeIsSixRectanglesThatShineOutward) {
       const import::Emitter emitter = emitter_of(cube, true);
       EXPECT_EQ(rectangles_in(emitter), 6U);
       EXPECT_EQ(std::get<Pieces>(emitter.shape).pieces.size(), 6U);
-      EXPECT_FALSE(emitter.two_sided) << "nobody sees its inside";
+      EXPECT_FALSE(emitter.two_sided) << "a closed body's inside cannot be seen";
       EXPECT_FALSE(emitter.hides_itself);
       for (const auto& corners : outlines_of(emitter))
         EXPECT_GT(glm::dot(vector_area(corners), corners[0] - glm::dvec3(1, 2, 3)), 0) << "outward";
@@ -117,7 +117,7 @@ TEST(Emitter, FlatOutlinesThatAreNotConvexAreCut) {
     expect_covered(star, emitter);
     EXPECT_LE(outlines_of(emitter).size(), 6U);
     EXPECT_TRUE(emitter.two_sided);
-    EXPECT_FALSE(emitter.hides_itself) << "all is in one plane";
+    EXPECT_FALSE(emitter.hides_itself) << "a flat emitter hides nothing of itself";
   }
 
   LampMesh frame;  // a hole in the middle
@@ -150,7 +150,7 @@ TEST(Emitter, TubesAndPanels) {
   EXPECT_EQ(rectangles_in(emitter_of(open)), 12U);
   EXPECT_FALSE(emitter_of(open).hides_itself);
   EXPECT_TRUE(emitter_of(open, true).two_sided);
-  EXPECT_TRUE(emitter_of(open, true).hides_itself) << "its inside is seen through it";
+  EXPECT_TRUE(emitter_of(open, true).hides_itself) << "through its open ends the inside can be seen";
   expect_covered(closed, emitter_of(closed, true));
   EXPECT_EQ(outlines_of(emitter_of(closed, true)).size(), 14U);
   EXPECT_FALSE(emitter_of(closed, true).two_sided);

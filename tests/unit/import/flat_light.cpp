@@ -104,7 +104,7 @@ TEST(FlatLight, OthersSayWhyNot) {
   const Points two{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}};
   EXPECT_EQ(why_not(two, {{0, 1, 2}, {3, 4, 5}}),
             "its triangles do not form one piece with a single outline and without holes");
-  EXPECT_EQ(why_not(kQuad, {{0, 1, 2}, {1, 2, 0}}), "it is a light") << "the same twice is once";
+  EXPECT_EQ(why_not(kQuad, {{0, 1, 2}, {1, 2, 0}}), "it is a light") << "a triangle that occurs twice counts once";
 }
 
 TEST(FlatLight, ToleratesTheRoundingAndNoMore) {

@@ -188,7 +188,7 @@ TEST_F(ForeignScenes, SolidMaterialsOfMeshesAreNamed) {
                   "materials that let light through, which is not supported for this format: 'Glass', 'Leaf';")));
   EXPECT_THAT(notes("c.obj", "mtllib .\nmtllib nowhere.mtl\n" + corners + "usemtl Glass\nf 1 2 3\n"),
               Contains(HasSubstr("'Glass'")))
-      << "folders and files that are not there are no libraries";
+      << "folders and missing files are ignored as libraries";
   EXPECT_THAT(notes("b.obj", corners + "usemtl Wood\nf 1 2 3\n"), Not(Contains(HasSubstr("light through"))));
   const std::string shape = R"(<X3D><Scene><Shape><Appearance><Material DEF="Pane" transparency="{}"/></Appearance>
 <IndexedFaceSet coordIndex="0 1 2 -1"><Coordinate point="0 0 0 1 0 0 0 1 0"/></IndexedFaceSet></Shape></Scene></X3D>)";

@@ -124,7 +124,7 @@ TEST_F(GltfAnimation, ScenesReadAheadAreThoseReadAlone) {
     return read_gltf(path, options);
   };
   EXPECT_EQ(bytes(read_at(0, &ahead)), bytes(read_at(0, nullptr)));
-  EXPECT_THAT(ahead.times, IsEmpty()) << "all were read with the first";
+  EXPECT_THAT(ahead.times, IsEmpty()) << "all times must be read together with the first";
   EXPECT_EQ(ahead.kept.size(), times.size());
   std::set<std::vector<std::byte>> different;
   for (const double time : times) {
@@ -132,9 +132,9 @@ TEST_F(GltfAnimation, ScenesReadAheadAreThoseReadAlone) {
     EXPECT_EQ(one, bytes(read_at(time, nullptr))) << time;
     different.insert(one);
   }
-  EXPECT_EQ(different.size(), times.size() - 1) << "one time was asked for twice";
+  EXPECT_EQ(different.size(), times.size() - 1) << "one time was requested twice";
   EXPECT_THAT(ahead.kept, IsEmpty());
-  EXPECT_EQ(bytes(read_at(3, &ahead)), bytes(read_at(3, nullptr))) << "a time that was not announced";
+  EXPECT_EQ(bytes(read_at(3, &ahead)), bytes(read_at(3, nullptr))) << "a time that is not in the list read ahead";
 
   Gltf still;
   const auto unmoved = write("still.glb", still.glb());
@@ -150,7 +150,7 @@ TEST_F(GltfAnimation, TheOriginRests) {
   Gltf gltf;
   gltf.animate(0, "translation", {0, 1}, {0, 0, 0, 100, 0, 0});
   const Scene at_rest = read(gltf);
-  EXPECT_FALSE(at_rest.origin) << "the middle of what is there";
+  EXPECT_FALSE(at_rest.origin) << "no separate origin: it is the middle of the triangles";
   const glm::dvec3 middle(0, 2.5, 0);  // middle of the lamp from −1 to 1 at a height of 5, and of the body from 0 to 1
   for (const double time : {0.0, 0.25, 1.0}) EXPECT_EQ(read(gltf, time).origin, middle) << time;
   gltf.at("/meshes/0/primitives/0")["targets"] = {
@@ -195,7 +195,7 @@ TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
   // The second corner follows the knee; the third follows it halfway, by weights that do not add up to 1.
   Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0.25f, 0.25f, 0, 0});
   gltf.at("/nodes/0")["translation"] = {50, 60, 70};  // a skin ignores the transform of the mesh's own node
-  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0)) << "bound where it is modelled";
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 0)) << "at rest the skin must not move the corner";
   gltf.animate(4, "translation", {0, 1}, {0, 0, 3, 8, 0, 3});
   const Scene scene = read(gltf, 0.5);
   EXPECT_EQ(scene.soup.positions[0], glm::dvec3(0, 0, 0));
@@ -210,7 +210,7 @@ TEST_F(GltfAnimation, SkinsFollowTheirJointsAlone) {
 TEST_F(GltfAnimation, SkinsNeedNoBindMatrices) {
   Gltf gltf = skinned({1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0});
   gltf.at("/skins/0").erase("inverseBindMatrices");
-  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 3)) << "where the knee is";
+  EXPECT_EQ(corner(gltf, {}), glm::dvec3(1, 0, 3)) << "the corner moves with the knee";
   EXPECT_THAT(read(gltf).warnings, IsEmpty());
 }
 
@@ -263,7 +263,7 @@ TEST_F(GltfAnimation, ALampWhoseJointsAreScaledToNothingIsDark) {
   EXPECT_EQ(hidden.lights[0].radiance, glm::dvec3(0));
   EXPECT_EQ(std::get<Polygon>(hidden.lights[0].shape).vertices, std::get<Polygon>(shown.lights[0].shape).vertices);
   EXPECT_THAT(hidden.warnings, Contains(HasSubstr("'Body' is scaled to zero")));
-  for (const glm::dvec3& p : hidden.soup.positions) EXPECT_EQ(p, hidden.soup.positions.front()) << "nothing is seen";
+  for (const glm::dvec3& p : hidden.soup.positions) EXPECT_EQ(p, hidden.soup.positions.front()) << "nothing is visible";
 }
 
 /// The usual way to hide a lamp: keys that set its scale to 0.
@@ -286,9 +286,9 @@ TEST_F(GltfAnimation, ALampThatIsScaledToNothingIsDark) {
     EXPECT_EQ(hidden.lights[0].radiance, glm::dvec3(0));
     const auto& before = std::get<Rectangle>(shown.lights[0].shape);
     const auto& after = std::get<Rectangle>(hidden.lights[0].shape);
-    EXPECT_EQ(after.half_u, before.half_u) << "the shape that it has at rest";
+    EXPECT_EQ(after.half_u, before.half_u) << "a hidden lamp keeps its shape at rest";
     EXPECT_EQ(after.half_v, before.half_v);
-    EXPECT_EQ(after.center, glm::dvec3(0, 5.5, 0)) << "where it is by then";
+    EXPECT_EQ(after.center, glm::dvec3(0, 5.5, 0)) << "a hidden lamp is at its place at this time";
     EXPECT_THAT(shown.warnings, IsEmpty());
     EXPECT_THAT(hidden.warnings, ::testing::ElementsAre("'Lamp' is scaled to zero: its light is dark"));
     // The body is invisible, and still belongs to the light.
@@ -318,7 +318,8 @@ TEST_F(GltfAnimation, WhatGltfForbidsIsRefusedWithItsPlace) {
   Gltf gltf;
   gltf.animate(0, "translation", {2, 1}, {0, 0, 0, 8, 4, 0});
   expect(gltf, "times must ascend");
-  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("times must ascend"))) << "at rest nothing of it is seen";
+  EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("times must ascend")))
+      << "at rest a faulty animation only causes a warning";
   gltf = {};
   gltf.animate(0, "translation", {1, 2}, {0, 0, 0});
   expect(gltf, "3 numbers for 2 keys; expected 6");
@@ -390,7 +391,7 @@ TEST_F(GltfAnimation, OneOfSeveralClips) {
     options.clips = {clip};
     const Scene scene = read_gltf(path, options);
     EXPECT_EQ(scene.soup.positions[1], glm::dvec3(3, 0, 0)) << clip;
-    EXPECT_EQ(lamp(scene), 5) << "no other is played";
+    EXPECT_EQ(lamp(scene), 5) << "no other clip may be played";
     EXPECT_EQ(scene.motion->last, 3);
     EXPECT_THAT(scene.warnings, IsEmpty());
   }
@@ -416,15 +417,17 @@ TEST_F(GltfAnimation, ChannelsWithoutANode) {
   EXPECT_EQ(corner(moved, 0.5), glm::dvec3(5, 0, 0));
   Gltf other = pointing_to("/materials/1/emissiveFactor");
   EXPECT_THAT(refusal(other), HasSubstr("'/materials/1/emissiveFactor' is animated by KHR_animation_pointer"));
-  EXPECT_THAT(read(other).warnings, Contains(HasSubstr("'/materials/1/emissiveFactor'"))) << "a still picture is drawn";
+  EXPECT_THAT(read(other).warnings, Contains(HasSubstr("'/materials/1/emissiveFactor'")))
+      << "at rest the pointer only causes a warning";
   Gltf rough = pointing_to("/materials/0/pbrMetallicRoughness/roughnessFactor");
-  EXPECT_THAT(read(rough, 0.5).warnings, Contains(HasSubstr("roughnessFactor"))) << "it changes no shadow";
+  EXPECT_THAT(read(rough, 0.5).warnings, Contains(HasSubstr("roughnessFactor")))
+      << "roughness changes no shadow, so the pointer only causes a warning";
   other.animate(0, "translation", {0, 1}, {4, 0, 0, 4, 0, 0});
   ReadOptions second;
   second.time = 0.5;
   second.clips = {"1"};
   EXPECT_EQ(read_gltf(write("scene.glb", other.glb()), second).soup.positions[1], glm::dvec3(5, 0, 0))
-      << "what is not played moves nothing";
+      << "a clip that is not played must move nothing";
   Gltf without;
   without.animate(0, "translation", {0, 1}, {4, 0, 0, 4, 0, 0});
   without.at("/animations/0/channels/0/target").erase("node");

@@ -82,11 +82,11 @@ TEST_F(GltfAsWritten, PercentSignsOfNames) {
   EXPECT_EQ(second("100%.bin"), 1);
   EXPECT_EQ(second("100%25.bin"), 1);
   write("a+b 5%z.bin", gltf.data);
-  EXPECT_EQ(second("a+b%205%z.bin"), 1) << "escapes beside a sign that is none";
+  EXPECT_EQ(second("a+b%205%z.bin"), 1) << "escapes next to a percent sign that begins none";
   write("50%20.bin", gltf.data);
-  EXPECT_EQ(second("50%20.bin"), 1) << "the only file";
+  EXPECT_EQ(second("50%20.bin"), 1) << "the only file that the name can mean";
   write("50 .bin", moved.data);
-  EXPECT_EQ(second("50%20.bin"), 2) << "what the escape means goes first";
+  EXPECT_EQ(second("50%20.bin"), 2) << "the decoded name takes precedence over the literal one";
   EXPECT_EQ(second("50%2520.bin"), 1);
   gltf.at("/buffers/0/uri") = "none%.bin";
   EXPECT_THAT(refusal_of_text(gltf), HasSubstr("none%.bin"));
@@ -112,7 +112,7 @@ TEST_F(GltfAsWritten, LeastVersions) {
   }
   gltf.at("/asset")["version"] = "2.1";
   gltf.at("/asset").erase("minVersion");
-  EXPECT_EQ(read(gltf).soup.triangles.size(), 3u) << "a later file that asks for no more than 2.0";
+  EXPECT_EQ(read(gltf).soup.triangles.size(), 3u) << "a file of version 2.1 without minVersion must be read";
 }
 
 /// A node with a matrix and separate parts is not valid; the matrix counts, as in three.js and Blender.
@@ -184,7 +184,7 @@ TEST_F(GltfAsWritten, ChunksOfGlbs) {
   EXPECT_EQ(triangles(glb(chunk("JSON", text + std::string((4 - text.size() % 4) % 4, ' ')) + chunk("ABCD", "1234") +
                           chunk(binary, gltf.data + padding))),
             3u)
-      << "what is unknown may stand anywhere";
+      << "chunks of unknown types may be anywhere";
   const auto path = write("scene.glb", glb(chunk("BLOB", text)));
   EXPECT_THAT(test::input_error([&] { read_gltf(path); }), HasSubstr("first chunk is not its JSON"));
 }
@@ -215,7 +215,7 @@ TEST_F(GltfAsWritten, NumbersThatAreNotFinite) {
   attributes["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, kNan, kNan, kNan, 0, 0, 1, 0, 0, 1});
   const Scene scene = read(gltf);
   ASSERT_EQ(scene.objects.size(), 2u);
-  EXPECT_EQ(scene.looks.normals[1], glm::vec3(0)) << "none: the triangle is flat";
+  EXPECT_EQ(scene.looks.normals[1], glm::vec3(0)) << "no normal: the triangle is shaded flat";
   EXPECT_THAT(scene.warnings, Contains(HasSubstr("'Body' has normals that are not finite")));
   // Normals of a morph target do nothing if the mesh has none.
   Gltf morphing;
@@ -281,7 +281,7 @@ TEST_F(GltfAsWritten, InstancesOfANode) {
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE") = gltf.add_floats("VEC3", {1, 1, 1});
   EXPECT_THAT(refusal(gltf), HasSubstr("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes/SCALE: 1 instances"));
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes") = {{"_ID", gltf.add_floats("SCALAR", {7, 8, 9})}};
-  EXPECT_EQ(read(gltf).objects.size(), 4u) << "all three where the node is";
+  EXPECT_EQ(read(gltf).objects.size(), 4u) << "all three instances are at the node's place";
   gltf.at("/nodes/0/extensions/EXT_mesh_gpu_instancing") = json::object();
   EXPECT_THAT(read(gltf).warnings, Contains(HasSubstr("'Body' has an empty list of instances")));
 }

@@ -88,7 +88,7 @@ TEST_F(GltfReader, PicturesOfDomesLieBesideTheFile) {
   ASSERT_TRUE(scene.lights.at(0).texture);
   EXPECT_EQ(scene.lights[0].texture->width, 2u);
   EXPECT_EQ(scene.lights[0].texture->texels[1], glm::vec3(2));
-  EXPECT_EQ(scene.sources.size(), 2u) << "no output may take the picture's place";
+  EXPECT_EQ(scene.sources.size(), 2u) << "the picture must be among the sources, so that no output overwrites it";
   gltf.at("/nodes/0/extras/dome/image") = "gone.hdr";
   EXPECT_THAT(refusal(gltf), HasSubstr("no such file \"gone.hdr\""));
   gltf.at("/nodes/0/extras/dome/image") = "/etc/hostname";
@@ -107,7 +107,7 @@ TEST_F(GltfReader, DomesThatAreNoneAreRefused) {
   mirrored.at("/nodes/0")["scale"] = {-1, 1, 1};
   EXPECT_THAT(refusal(mirrored), HasSubstr("/nodes/0/extras/dome: its transform mirrors it"));
   Gltf foreign = with_dome("St Paul's");
-  EXPECT_TRUE(read(foreign).lights.empty()) << "another tool's";
+  EXPECT_TRUE(read(foreign).lights.empty()) << "a property of another tool is no dome";
 }
 
 }  // namespace

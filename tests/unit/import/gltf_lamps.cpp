@@ -53,7 +53,7 @@ TEST_F(GltfReader, LampsBecomeSunsAndSpheres) {
   const Scene lit = read(point);
   const auto& sphere = std::get<Sphere>(lit.lights.at(0).shape);
   EXPECT_EQ(sphere.center, glm::dvec3(1, 2, 3));
-  EXPECT_EQ(sphere.radius, 0.5) << "a node's scale is none of its lamp's";
+  EXPECT_EQ(sphere.radius, 0.5) << "a node's scale must not change its lamp's radius";
   EXPECT_FALSE(sphere.cone);
   EXPECT_NEAR(lit.lights[0].radiance.x, 40 / (M_PI * 0.25), 1e-12);
 
@@ -103,8 +103,9 @@ TEST_F(GltfReader, LampsOfBlenderAreAsInBlender) {
   EXPECT_NEAR(std::cos(half.inner * M_PI / 180), 0.75, 1e-12);
   EXPECT_NEAR(half.outer, 60, 1e-12);
   EXPECT_NEAR(std::cos(cone(0).inner * M_PI / 180), 1, 1e-12);
-  EXPECT_NEAR(std::cos(cone(outer * (1 - 1e-9)).inner * M_PI / 180), 0.501, 1e-12) << "its edge is never sharp";
-  EXPECT_FALSE(cone(outer / 2, {{"smooth", 0}}).smooth) << "whoever says it means it";
+  EXPECT_NEAR(std::cos(cone(outer * (1 - 1e-9)).inner * M_PI / 180), 0.501, 1e-12)
+      << "a cone in a file of Blender never has a sharp edge";
+  EXPECT_FALSE(cone(outer / 2, {{"smooth", 0}}).smooth) << "an explicit `smooth` must be used";
 }
 
 TEST_F(GltfReader, LampsWithoutASizeTakeTheUsersOrAWarning) {
@@ -121,7 +122,7 @@ TEST_F(GltfReader, LampsWithoutASizeTakeTheUsersOrAWarning) {
     } else {
       EXPECT_EQ(std::get<Sun>(scene.lights.at(0).shape).angle, kSunAngle);
       EXPECT_EQ(std::get<Sun>(chosen.lights.at(0).shape).angle, 0);
-      EXPECT_EQ(chosen.lights[0].radiance, glm::dvec3(2)) << "of a point its irradiance";
+      EXPECT_EQ(chosen.lights[0].radiance, glm::dvec3(2)) << "a point-like sun has its irradiance in `radiance`";
     }
   }
 }
@@ -234,7 +235,7 @@ TEST_F(GltfReader, LampsMayCastNoShadows) {
   const Scene scene = read(gltf);
   ASSERT_EQ(scene.lights.at(0).unshaded_by.size(), scene.objects.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) EXPECT_EQ(scene.lights[0].unshaded_by[i], i);
-  EXPECT_TRUE(scene.objects.at(0).casts_shadow == false) << "the node's mesh is asked, too";
+  EXPECT_TRUE(scene.objects.at(0).casts_shadow == false) << "properties of the node's mesh count, too";
 }
 
 TEST_F(GltfReader, AreaLampsThatAreNoneAreRefused) {
@@ -252,7 +253,7 @@ TEST_F(GltfReader, AreaLampsThatAreNoneAreRefused) {
   expect("size", {1, 0}, ": it has no area");
   expect("radiance", {1, 1, -1}, "/radiance");
   Gltf gltf = with_area_lamp("big");
-  EXPECT_TRUE(read(gltf).lights.empty()) << "it is another tool's";
+  EXPECT_TRUE(read(gltf).lights.empty()) << "a property of another tool is no lamp";
 }
 
 TEST_F(GltfReader, ALampThatIsOffIsNoLight) {

@@ -286,7 +286,7 @@ TEST_F(GltfReader, ExtensionsThatItRequiresAreUnderstoodOrRefused) {
   EXPECT_THAT(scene.warnings,
               ::testing::ElementsAre(HasSubstr("'EXT_unheard_of'"), "extensions ignored: EXT_other, EXT_one_more"));
   gltf.document["extensionsRequired"] = {"KHR_materials_variants", "KHR_materials_unlit", "KHR_audio"};
-  EXPECT_THAT(read(gltf).lights, ::testing::SizeIs(1)) << "what changes no light may be required";
+  EXPECT_THAT(read(gltf).lights, ::testing::SizeIs(1)) << "extensions that do not change the light may be required";
   gltf.document["extensionsUsed"] = {"EXT_lights_ies"};
   gltf.document.erase("extensionsRequired");
   EXPECT_THAT(refusal(gltf), HasSubstr("'EXT_lights_ies' is an extension that shapes the light of lamps"));

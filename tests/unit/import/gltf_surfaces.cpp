@@ -87,8 +87,8 @@ TEST_F(GltfSurfaces, HaveMaterialsColoursAndNormals) {
   // A mirrored triangle's corners are taken in another order.
   EXPECT_EQ(scene.looks.colors[0], glm::vec4(1, 0, 0, 1));
   EXPECT_THAT(scene.looks.colors, Contains(glm::vec4(0, 0, 0.5f, 1)));
-  EXPECT_EQ(scene.looks.colors.back(), glm::vec4(1)) << "the lamp has none";
-  EXPECT_EQ(scene.looks.normals[0], glm::vec3(0, 0, -1)) << "turned over with its node";
+  EXPECT_EQ(scene.looks.colors.back(), glm::vec4(1)) << "white: the lamp has no colours";
+  EXPECT_EQ(scene.looks.normals[0], glm::vec3(0, 0, -1)) << "the normal is mirrored with its node";
   EXPECT_EQ(scene.looks.normals.back(), glm::vec3(0));
 }
 
@@ -115,9 +115,10 @@ TEST_F(GltfSurfaces, LetLightThrough) {
   EXPECT_EQ(read(gltf).objects[0].alpha, Alpha()) << "an alpha of 1 is solid";
   material["pbrMetallicRoughness"]["baseColorFactor"] = {1, 1, 1, 0.3};
   const Scene gone = read(gltf);
-  ASSERT_EQ(gone.objects.size(), 1u) << "below the cutoff of 0.5 there is nothing";
+  ASSERT_EQ(gone.objects.size(), 1u) << "a surface with alpha below the cutoff of 0.5 is left out";
   EXPECT_EQ(gone.objects[0].name, "Lamp");
-  EXPECT_EQ(mesh::import_mesh(write("scene.glb", gltf.glb())).soup.triangles.size(), 2u) << "as a mesh, too";
+  EXPECT_EQ(mesh::import_mesh(write("scene.glb", gltf.glb())).soup.triangles.size(), 2u)
+      << "also if the file is read as a mesh";
   material["alphaCutoff"] = 0.25;
   EXPECT_EQ(read(gltf).objects[0].alpha, Alpha());
   material["alphaMode"] = "BLEND";
@@ -146,7 +147,7 @@ TEST_F(GltfSurfaces, VerticesThatNobodySeesMoveTheOrigin) {
     for (const glm::dvec3& p : scene.soup.positions) lower = glm::min(lower, p), upper = glm::max(upper, p);
     return 0.5 * lower + 0.5 * upper;
   };
-  EXPECT_FALSE(read(gltf).origin) << "the middle of what is there";
+  EXPECT_FALSE(read(gltf).origin) << "no separate origin: it is the middle of the triangles";
   const glm::dvec3 middle = box_of(read(gltf));
   gltf.at("/nodes").push_back({{"name", "Pane"}, {"mesh", gltf.at("/meshes").size()}, {"translation", {0, 50, 0}}});
   gltf.at("/meshes").push_back(gltf.at("/meshes/0"));
@@ -160,7 +161,7 @@ TEST_F(GltfSurfaces, VerticesThatNobodySeesMoveTheOrigin) {
   EXPECT_EQ(box_of(read(gltf)), middle) << "it is left out";
   EXPECT_EQ(read(gltf).origin, std::optional(with_pane));
   gltf.at("/nodes").back()["extras"] = {{"body", false}};
-  EXPECT_EQ(read(gltf).origin, std::optional(with_pane)) << "no light, and so a mesh";
+  EXPECT_EQ(read(gltf).origin, std::optional(with_pane)) << "a body without a light is an ordinary mesh";
 
   Gltf stray;  // a fourth vertex
   const glm::dvec3 open = box_of(read(stray));
@@ -178,7 +179,7 @@ TEST_F(GltfSurfaces, PicturesMayHaveHoles) {
   EXPECT_EQ(read(gltf).objects.size(), 2u);
   gltf.at("/meshes/0/primitives/0/attributes")["COLOR_0"] =
       gltf.add_floats("VEC4", {1, 1, 1, 1, 1, 1, 1, 0, 1, 1, 1, 1});
-  EXPECT_EQ(read(gltf).objects[0].alpha, (Alpha{Alpha::Mode::mask, 1, 0.5})) << "a vertex has 0";
+  EXPECT_EQ(read(gltf).objects[0].alpha, (Alpha{Alpha::Mode::mask, 1, 0.5})) << "one vertex has an alpha of 0";
   gltf.at("/meshes/0/primitives/0/attributes").erase("COLOR_0");
   gltf.at("/images/0")["bufferView"] = 0;
   EXPECT_THAT(refusal(gltf), AllOf(HasSubstr("'Body'"), HasSubstr("PNG")));
@@ -210,7 +211,8 @@ TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   Gltf glossy;
   glossy.at("/materials/0")["alphaMode"] = "MASK";
   glossy.at("/materials/0")["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {{"diffuseFactor", {1, 1, 1, 0}}};
-  EXPECT_THAT(read(glossy).warnings, Contains("'Body' is wholly transparent, and left out")) << "its alpha is there";
+  EXPECT_THAT(read(glossy).warnings, Contains("'Body' is wholly transparent, and left out"))
+      << "the alpha of diffuseFactor must count";
   Gltf pane;
   pane.at("/materials/0")["alphaMode"] = "BLEND";
   pane.at("/materials/0/pbrMetallicRoughness")["baseColorFactor"] = {1, 1, 1, 0.5};
@@ -293,7 +295,7 @@ TEST_F(GltfSurfaces, ExtrasSayWhoCastsAndReceives) {
   gltf.at("/nodes/0")["extras"] = {{"receivesShadow", true}, {"unknown", "word"}};
   const Scene scene = read(gltf);
   EXPECT_FALSE(scene.objects[0].casts_shadow);
-  EXPECT_TRUE(scene.objects[0].receives_shadow) << "the object's own word comes first";
+  EXPECT_TRUE(scene.objects[0].receives_shadow) << "properties of the object override those of its mesh";
   EXPECT_TRUE(scene.objects[1].casts_shadow);
   gltf.at("/nodes/1")["extras"] = {{"body", false}};
   const Scene bodiless = read(gltf);
@@ -333,7 +335,7 @@ TEST_F(GltfSurfaces, CamerasHaveTheirShape) {
   gltf.at("/cameras/0") = {{"type", "orthographic"},
                            {"orthographic", {{"xmag", 4}, {"ymag", 3}, {"znear", 0}, {"zfar", 9}}}};
   const Scene scene = read(gltf);
-  ASSERT_EQ(scene.cameras.size(), 1u) << "no other is put in its place";
+  ASSERT_EQ(scene.cameras.size(), 1u) << "the orthographic camera must not be replaced";
   EXPECT_EQ(scene.cameras[0].height, 6);
   EXPECT_DOUBLE_EQ(*scene.cameras[0].aspect, 4.0 / 3);
 }

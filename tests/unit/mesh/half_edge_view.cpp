@@ -59,7 +59,8 @@ void expect_sound(const TriangleSoup& soup, const EdgeGraph& graph, const HalfEd
     Triangle points = graph.corners(soup.triangles[t]), held{};
     for (std::size_t i = 0; i < 3; ++i) {
       held[i] = surface.point_of_vertex()[corners[i]];
-      EXPECT_TRUE(directed.insert({corners[i], corners[(i + 1) % 3]}).second) << "two faces run along an edge alike";
+      EXPECT_TRUE(directed.insert({corners[i], corners[(i + 1) % 3]}).second)
+          << "two faces traverse an edge in the same direction";
     }
     if (std::ranges::binary_search(surface.turned(), t)) std::swap(points[1], points[2]);
     const auto start = std::ranges::find(held, points[0]) - held.begin();

@@ -26,7 +26,7 @@ TEST(DeviceChoice, SomeDeviceIsUsable) {
     EXPECT_FALSE(devices[i].name.empty());
     if (!devices[i].usable()) continue;
     EXPECT_GT(devices[i].subgroup_size, 0U);
-    EXPECT_GE(devices[i].max_storage_buffer_range, 1U << 27U) << "Vulkan guarantees as much";
+    EXPECT_GE(devices[i].max_storage_buffer_range, 1U << 27U) << "Vulkan guarantees this minimum";
     EXPECT_GT(devices[i].memory_bytes, 0U);
   }
 }
@@ -51,7 +51,7 @@ TEST(DeviceChoice, NoDeviceFileNoGpu) {
   EXPECT_TRUE(has_gpu_nodes(folder));
   std::filesystem::remove_all(folder);
 #else
-  GTEST_SKIP() << "device files are not looked at here";
+  GTEST_SKIP() << "this system has no device files to look for";
 #endif
 }
 

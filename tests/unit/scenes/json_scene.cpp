@@ -85,7 +85,7 @@ TEST(JsonScene, LinksLightsAndMeshes) {
   EXPECT_FALSE(scene.objects[0].lit_by);
   EXPECT_EQ(scene.objects[1].lit_by, (Numbers{0, 1}));
   EXPECT_EQ(scene.objects[2].lit_by, Numbers{}) << "by none";
-  EXPECT_EQ(scene.lights[0].unshaded_by, (Numbers{1, 2})) << "all meshes of that name";
+  EXPECT_EQ(scene.lights[0].unshaded_by, (Numbers{1, 2})) << "the name stands for all meshes that have it";
   EXPECT_EQ(scene.lights[1].unshaded_by, Numbers{0});
   EXPECT_EQ(scene.lights[2].unshaded_by, (Numbers{0, 1, 2}));
   EXPECT_TRUE(scene.lights[3].unshaded_by.empty());

@@ -114,7 +114,7 @@ TEST(Shapes, SayBeforehandHowLargeTheyAre) {
     const mesh::ShapeSize size = scenes::size_of_shape(shape);
     const TriangleSoup soup = scenes::read_shape(shape);
     EXPECT_EQ(size.triangles, soup.triangles.size());
-    EXPECT_LE(size.vertices, soup.positions.size()) << "only the different ones are known";
+    EXPECT_LE(size.vertices, soup.positions.size()) << "size_of_shape counts only distinct vertices";
   }
 }
 

@@ -29,7 +29,7 @@ TEST(GlbWriter, ReadsBackInSinglePrecision) {
   const Scene scene = read_scene(std::filesystem::path(PENUMBRA_SCENES) / "fusion.json");
   EXPECT_TRUE(write_scene(scene, folder / "scene.glb").empty());
   const Scene again = read_scene(folder / "scene.glb");
-  ASSERT_EQ(again.soup.triangles.size(), scene.soup.triangles.size()) << "a light without a body stays without";
+  ASSERT_EQ(again.soup.triangles.size(), scene.soup.triangles.size()) << "a light without a body must not get one";
   for (std::size_t i = 0; i < scene.soup.triangles.size(); ++i) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
       ASSERT_EQ(again.soup.positions[again.soup.triangles[i][corner]],

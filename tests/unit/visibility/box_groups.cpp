@@ -53,7 +53,8 @@ TEST(BoxGroups, HoldEveryBoxOnceInGroupsThatFollowOneAnother) {
           EXPECT_EQ(box.lower, boxes[box.number].lower);
           EXPECT_TRUE(holds(group, box));
         }
-        EXPECT_LE(group.count, kGroup) << "200 cells are fewer than the grid has; those of one place are cut anyhow";
+        EXPECT_LE(group.count, kGroup)
+            << "boxes in 200 cells need no cell to be halved, and boxes at one place must be divided, too";
       }
       EXPECT_EQ(next, count);
       EXPECT_EQ(std::ranges::count(seen, 1), count);

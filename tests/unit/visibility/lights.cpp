@@ -299,7 +299,7 @@ TEST(Lights, InsideASphereNothingShines) {
   const Light light = light_of(scenes::Sphere{{1, 2, 3}, 0.5}, {64, 0, 0, SamplePattern::grid, 0});
   std::vector<glm::vec3> points(64);
   for (const glm::vec3 p : {glm::vec3(1, 2, 3), glm::vec3(1.25f, 2, 3), glm::vec3(1.5f, 2, 3), glm::vec3(1, 1.5f, 3)}) {
-    EXPECT_FALSE(in_front_of_light(light, p)) << "strictly outside, or not";
+    EXPECT_FALSE(in_front_of_light(light, p)) << "a point in or on the sphere is not in front of it";
     light_points_for(light, p, points.data());
     for (const glm::vec3& l : points) EXPECT_EQ(l, light.center);
   }
@@ -322,7 +322,7 @@ TEST(Lights, SunSamplesAreDirectionsOverItsDisk) {
     const glm::dvec3 travels = glm::normalize(glm::dvec3(-0.35, -0.87, -0.35));
     const Light light = light_of(scenes::Sun{travels, angle}, request, {100, 200, 300});
     EXPECT_EQ(light.kind, LightKind::sun);
-    EXPECT_EQ(light.center, glm::vec3(-travels)) << "the scene's origin moves no direction";
+    EXPECT_EQ(light.center, glm::vec3(-travels)) << "the scene's origin must not change a direction";
     const double tangent = std::tan(glm::radians(angle) / 2);
     EXPECT_EQ(light.sun->tangent, tangent);
     EXPECT_NEAR(light.area, kPi * tangent * tangent, 1e-12 * light.area);

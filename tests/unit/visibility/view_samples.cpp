@@ -127,7 +127,8 @@ TEST(Classify, EveryKindOfPixel) {
   EXPECT_EQ(class_at({9.1, 9, 1}, {9.1, 0, 0.1}), PixelClass::emitter);
   EXPECT_EQ(class_at({12.1, 9, 1}, {12.1, 0, 0.1}), PixelClass::unshadowed);
   EXPECT_EQ(class_at({15.1, 3, 1}, {15.1, 0, 0.1}), PixelClass::other_body);
-  EXPECT_EQ(class_at({18.1, 9, 1}, {18.1, 7, 0.1}), PixelClass::behind) << "and another light's body";
+  EXPECT_EQ(class_at({18.1, 9, 1}, {18.1, 7, 0.1}), PixelClass::behind)
+      << "behind the light, and also the body of another light";
   EXPECT_EQ(class_at({0, 9, 0.5}, {50, 0, 50}), PixelClass::background);
 }
 
