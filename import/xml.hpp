@@ -14,7 +14,7 @@
 
 namespace penumbra::import {
 
-/// An XML text with places for messages; used by the AMF, 3MF and X3D readers. Internal to this folder. pugixml expands
+/// An XML text with places for messages; used by the AMF, 3MF and X3D readers. Internal to this room. pugixml expands
 /// no entities that a file defines and opens no files.
 class XmlText {
  public:

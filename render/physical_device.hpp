@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// Selection of the Vulkan device that runs Penumbra. Internal to this folder.
+/// Selection of the Vulkan device that runs Penumbra. Internal to this room.
 namespace penumbra::render {
 
 /// Returns all devices that the loader lists; empty for a loader without a working driver.

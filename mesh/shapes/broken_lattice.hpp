@@ -13,7 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
-/// Internal to this folder: the parts of broken meshes, on a lattice of integers.
+/// Internal to this room: the parts of broken meshes, on a lattice of integers.
 namespace penumbra::mesh::broken {
 
 inline constexpr int kCell = 2048;  ///< lattice steps along a cell: a needle one step high is below kNeedle

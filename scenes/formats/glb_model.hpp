@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-/// A glTF model under construction, with one scene and one buffer. Internal to this folder: uses TinyGLTF's types.
+/// A glTF model under construction, with one scene and one buffer. Internal to this room: uses TinyGLTF's types.
 namespace penumbra::scenes {
 
 /// Every returned index is valid in the model; buffer views are multiples of four bytes.

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-/// A wedge cut by a box, as a polyhedron whose corners are exact rationals. Internal to this folder, since it uses
+/// A wedge cut by a box, as a polyhedron whose corners are exact rationals. Internal to this room, since it uses
 /// GMP's types.
 namespace penumbra::volumes {
 

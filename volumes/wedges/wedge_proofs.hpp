@@ -4,7 +4,7 @@
 #include "volumes/wedges/wedge_polyhedron.hpp"
 #include "volumes/wedges/wedge_validation.hpp"
 
-/// Proofs of a single wedge. Internal to this folder.
+/// Proofs of a single wedge. Internal to this room.
 namespace penumbra::volumes {
 
 class WedgeProofs {
