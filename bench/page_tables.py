@@ -20,6 +20,7 @@ sys.path.insert(0, str(ROOT / "docs"))
 
 import map_fits_pictures  # noqa: E402
 import predicate_lines  # noqa: E402
+import ray_tables  # noqa: E402
 import scaling_tables  # noqa: E402
 from measured_tables import Answer, Bench, Compared, Megabytes, ProcessorSeconds, Run, Table, head_commit, measure  # noqa: E402
 
@@ -508,6 +509,7 @@ TABLES = {
     "shadow-map-own-depth": own_depth(),
     "deep-penumbra-bounds": deep_penumbra_bounds(),
     "predicates": predicate_lines.TABLE,
+    **ray_tables.TABLES,
     **scaling_tables.TABLES,
     "self-test": self_test(),
     "file-sizes": file_sizes(),

@@ -12,10 +12,12 @@ from experiment import TRUTH, rounded
 
 SCENES = ("bunny", "large-penumbra")
 GEOMETRY = [TRUTH, "edge-scatter", "view-sample", "view-sample:variant=sintorn", "view-sample-planar", "hierarchical-penumbra", "depth-complexity",
-            "depth-complexity:variant=laine", "soft-volume", "soft-volume-blend", "soft-irregular", "wedge-ramp", "plateaus", "hard-volume", "alias-free"]
+            "depth-complexity:variant=laine", "soft-volume", "soft-volume:fusion=product", "soft-volume:fusion=vote", "soft-volume-blend", "soft-irregular", "wedge-ramp",
+            "plateaus", "hard-volume", "hard-volume:variant=zp+", "hard-volume:variant=cc", "hard-volume:variant=split", "hard-volume:variant=hierarchical",
+            "alias-free", "hybrid-volume"]
 IMAGE = ["shadow-map", "pcf", "pcss", "vssm", "convolution", "occlusion-textures", "soft-shadow-map", "backproject", "backproject-peel",
          "bitmask", "contour", "packet", "accumulate", "adaptive-light", "layered-attenuation", "deep-penumbra",
-         "penumbra-map", "smoothies", "parker", "brabec-seidel", "kirsch-doellner", "arvo", "layer-rays"]
+         "penumbra-map", "smoothies", "parker", "brabec-seidel", "kirsch-doellner", "arvo", "silhouette-map", "forward-map", "layer-rays"]
 RAYS = ["plain-rays", "raytrace"]
 SIZE, SAMPLES, JUDGED = 128, 256, 1000
 
