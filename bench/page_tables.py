@@ -284,7 +284,7 @@ def coverage():
         return validated(scene, "original", figure)
 
     paths = (("samples",), ("singleLayer",), ("maxAgainstTriangles",), ("maxAgainstExact",), ("centreDifference", "mean"), ("centreDifference", "max"))
-    return Table("silhouettes' sums beside triangles and exact areas", "`penumbra wedges SCENE --validate`; of `textured-light` weights in place of areas.",
+    return Table("silhouettes' sums beside triangles and exact areas", "`penumbra wedges SCENE --validate`; for `textured-light`, weights take the place of areas.",
                  ("scene", "samples", "single layer", "receiver − triangles", "receiver − exact", "centre − receiver: mean", "largest"),
                  (None, None, None, ".0e", ".0e", ".4f", ".3f"),
                  tuple((scene, *(of(scene, path) for path in paths)) for scene in ("parallel-square", "contact", "broken", "bunny", "fusion", "large-penumbra", "room", "self-shadow",

@@ -72,8 +72,9 @@ class SceneReader {
     add_hidden(shown);
     faces_.require_all(held_, file_);
     if (faces_.triangles() < triangles_) {
-      throw InputError("{}: it shows polygons of {} triangles, but Assimp delivers {}; save it as OBJ, PLY or glTF",
-                       file_, triangles_, faces_.triangles());
+      throw InputError(
+          "{}: its polygons consist of {} triangles in all, but Assimp delivers {}; save it as OBJ, PLY or glTF", file_,
+          triangles_, faces_.triangles());
     }
     settle_unused_vertices(mesh_, [&](std::uint32_t v) { refuse_vertex(v); });
     if (mesh_.soup.triangles.empty()) {
@@ -252,7 +253,7 @@ class FbxFrame {
     }
     if (turn == glm::dmat3(1)) return;
     if (glm::determinant(turn) != 1) {
-      notes_.emplace_back("FBX: its axes are no right-handed frame: left as they are");
+      notes_.emplace_back("FBX: its axes do not form a right-handed frame, so they are not changed");
       return;
     }
     to_scene_ = to_scene_ * glm::dmat4(turn);

@@ -72,7 +72,8 @@ std::vector<std::string> FaceCollector::notes() const {
     std::string note = fmt::format("{} polygons became {} triangles ({} convex, {} concave by ear clipping",
                                    convex_ + concave_ + tangled_, polygon_triangles_, convex_, concave_);
     if (tangled_ > 0)
-      note += fmt::format(", {} that cross themselves or have no area by a fan where no ear was left", tangled_);
+      note += fmt::format(", {} that cross themselves or have no area: there, a fan was used where no ear was left",
+                          tangled_);
     notes.push_back(note + ")");
   }
   if (points_ > 0) notes.push_back(fmt::format("{} points skipped: faces with one corner", points_));

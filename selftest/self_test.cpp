@@ -52,7 +52,8 @@ void join(Check& all, const Check& one) {
   all.add(one);
 }
 
-/// Returns cases for every rasteriser: a crowd, its board also with the opposite winding, and needles.
+/// Returns a scene that tests any rasteriser: the scene of crowd.hpp, with a second copy of its tilted board in the
+/// opposite winding and two very thin triangles.
 scenes::Scene crowd_with_needles(bool wall, bool two_sided) {
   scenes::Scene scene = crowd(wall, two_sided);
   add_quad(scene, {-0.7, 1.5, 0.1}, {-0.43, -0.21, 0}, {0, 0, 0.77});

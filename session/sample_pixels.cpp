@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses the pixels of --sample-pixels: evenly spaced among the judged ones, or by their coordinates.
+// Chooses the pixels of --sample-pixels: evenly spaced among the judged pixels (docs/definitions.md), or by their
+// coordinates.
 
 #include "session/sample_pixels.hpp"
 

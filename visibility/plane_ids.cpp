@@ -34,7 +34,7 @@ __extension__ using UInt128 = unsigned __int128;
 // ---- Arithmetic modulo the Mersenne prime p = 2⁶¹ − 1. Values are kept in [0, p).
 constexpr std::uint64_t kPrime = (std::uint64_t{1} << 61) - 1;
 
-/// Holds the sum of up to three products, below 2¹²⁴.
+/// Returns x modulo p. x: below 2¹²⁴, for example the sum of up to three products.
 std::uint64_t reduce(UInt128 x) {  // 2⁶¹ ≡ 1: fold the high bits onto the low ones
   std::uint64_t r = static_cast<std::uint64_t>(x & kPrime) + static_cast<std::uint64_t>(x >> 61);  // < 2⁶⁴
   r = (r & kPrime) + (r >> 61);                                                                    // < p + 6

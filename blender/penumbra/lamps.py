@@ -9,7 +9,8 @@ from math import acos, cos, degrees, pi, radians, sqrt, tan
 
 from . import graph, space
 
-# Wider suns are refused: above this angle, for a surface with the sun 45 degrees above, they are 2 % and more off.
+# Suns wider than _WIDEST_SUN are refused. Suns wider than _WIDE_SUN get a warning: on a surface that such a sun shines on at 45 degrees,
+# its light is at least 2 % off.
 _WIDEST_SUN, _WIDE_SUN = radians(120), radians(90)
 # Largest difference in brightness between a lamp's ball and Cycles' disk that is not reported.
 _UNSAID = 0.02
@@ -42,8 +43,8 @@ def sun_irradiance(strength, angle):
 
 
 def cone_of(lamp):
-    """Returns a spot lamp's inner and outer half angle in radians: its light falls off over `blend` of the cosines, at
-    least 0.001."""
+    """Returns a spot lamp's inner and outer half angle in radians. Light falls off between the two, whose cosines differ by `spot_blend`
+    times 1 minus the outer angle's cosine, at least by 0.001."""
     outer = min(lamp.spot_size / 2, pi / 2)
     return acos(min(cos(outer) + max((1 - cos(outer)) * lamp.spot_blend, 0.001), 1.0)), outer
 
@@ -114,7 +115,7 @@ def check_balls(balls, surfaces, losses):
             losses.refuse(f"is a lamp whose radius, {ball.radius:.3g}, reaches '{name}', {nearest:.3g} from its middle: surfaces "
                           "inside would be black; make it smaller", ball.name)
         elif ball.is_disk and (ball.radius / nearest) ** 2 > _UNSAID:
-            losses.mention(f"is a ball here and a disk in Cycles, and only {nearest:.3g} to '{name}' with a radius of "
+            losses.mention(f"is a ball here and a disk in Cycles, and only {nearest:.3g} away from '{name}', with a radius of "
                            f"{ball.radius:.3g}: up to {100 * (ball.radius / nearest) ** 2:.0f} % brighter there", ball.name)
 
 
@@ -172,7 +173,7 @@ def _write_area(lamp, name, matrix, power, glb, losses, shades):
     if max(radiance) <= 0:
         return
     if is_sheared(matrix):
-        losses.mention("is an area lamp that is sheared (by a parent with uneven scale): its power is right, and its shape is that in the viewport, which Cycles' may not be", name)
+        losses.mention("is an area lamp that is sheared (by a parent with uneven scale): its power is right, and its shape is as in the viewport; in Cycles it may be different", name)
     glb.area_lamp(name, matrix, shape, size, radiance, shades)
 
 

@@ -2,7 +2,7 @@
 // Directions and places in a fitted face.
 #include "maps/host/fitted_face.shared.h"
 
-// Returns the b of a row of a face (FittedFace::direction).
+// Returns the coordinate b (see FittedFace) of a place whose row is `row`; the inverse of face_row.
 float face_b(FittedFace face, float row) {
   if (face.ratio == 0.0) return row;
   const float power = (row - face.margin) / (1.0 - 2.0 * face.margin);
@@ -22,7 +22,7 @@ vec3 face_direction(FittedFace face, vec2 place) {
   return along > 0.0 ? d / along : vec3(0.0);
 }
 
-// Returns b across a face's rows (FittedFace::place); 2 beyond the logarithm's end.
+// Returns the row, from 0 to 1, of the coordinate b (see FittedFace); 2 if b is beyond the end of a logarithmic face.
 float face_row(FittedFace face, float b) {
   if (face.ratio == 0.0) return b;
   const float left = 1.0 - b * (1.0 - 1.0 / face.ratio);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Part of MapMethod: records look-ups. Workgroups that have nothing to look at are excluded first, if the recipe has a
-// sorting pass (group_list.glsl); workgroups whose loops a driver ended are repeated with fewer rows of a map at a
-// time.
+// sorting pass (group_list.glsl); some drivers end a workgroup's loops after a fixed number of iterations, and such
+// workgroups are repeated with fewer rows of a map at a time.
 
 #include "maps/host/recipe_method.hpp"
 

@@ -7,8 +7,9 @@
 
 namespace penumbra::mesh {
 
-/// Finds every (vertex, edge) where the vertex, any triangle's corner, lies exactly inside the open edge. The points of
-/// a listed place are the vertex and the edge's two ends; its triangles are those of the edge.
+/// Finds every pair of a vertex (a corner of any triangle) and an edge whose interior contains it exactly. In
+/// DefectPlace, the points of a listed place are the vertex and the edge's two ends; its triangles are those of the
+/// edge.
 Defect find_t_junctions(const MeshView& mesh, const EdgeGraph& graph, std::size_t list_limit, const Progress& progress);
 
 }  // namespace penumbra::mesh

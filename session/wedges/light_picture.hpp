@@ -8,7 +8,8 @@
 
 namespace penumbra::session {
 
-/// Light as seen from a view sample, by the centre's silhouettes and by the sample's own.
+/// Light as seen from a view sample, computed once with the silhouettes as seen from the light's centre and once with
+/// those seen from the view sample.
 struct LightPicture {
   const visibility::Light& light;
   const volumes::Casters& casters;

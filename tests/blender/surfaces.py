@@ -274,7 +274,7 @@ class Refusals(unittest.TestCase):
         scenes.lamp("POINT", (-2, 0, 1.5), name="Bulb", energy=100, shadow_soft_size=0.05)
         self.expect(scene)
         bpy.data.lights["Bulb"].shadow_soft_size = 0.5
-        self.expect(scene, "", "'Bulb' is a ball here and a disk in Cycles, and only 1.44 to 'Block' with a radius of 0.5: up to 12 %")
+        self.expect(scene, "", "'Bulb' is a ball here and a disk in Cycles, and only 1.44 away from 'Block', with a radius of 0.5: up to 12 %")
         bpy.data.lights["Bulb"].shadow_soft_size = 1.6
         self.expect(scene, "'Bulb' is a lamp whose radius, 1.6, reaches 'Block'")
 

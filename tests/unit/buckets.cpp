@@ -22,7 +22,7 @@ std::vector<std::uint32_t> random_words(std::size_t count, std::uint32_t most) {
   return words;
 }
 
-TEST(Parts, HoldEachElementInItsPartByNumber) {
+TEST(Parts, HoldTheirElementsInAscendingOrder) {
   for (const std::size_t count : {0U, 1U, 16384U, 16385U, 100000U}) {
     const std::vector<std::uint32_t> words = random_words(count, 1023);
     const Parts parts = into_parts(count, 16, 6, [&](std::size_t i) { return words[i]; });
@@ -111,7 +111,7 @@ TEST(Pages, ListsHaveTheirSizeAndHoldZeros) {
   EXPECT_TRUE(std::ranges::all_of(list, [](const Big& x) { return x.values[0] == 1 && x.values[39] == 0; }));
 }
 
-TEST(Pages, ListsOfNoSetValuesKeepWhatIsWritten) {
+TEST(Pages, UninitialisedListsKeepWhatIsWritten) {
   for (const std::size_t count : {1U, 5000U, 3000000U}) {
     UnsetList<std::uint32_t> list;
     list.resize(count);

@@ -66,8 +66,8 @@ TEST(LightTiles, HoldEachSampleOnce) {
   }
 }
 
-/// Light samples anywhere in 64 cells or, where there are 40 of them, all at one place.
-TEST(LightTiles, AreFoundByStepsToTheRight) {
+/// Uses light samples at random places in 64 × 64 cells; the case with 40 samples has all of them at one place.
+TEST(LightTiles, TableOfStepsGivesEveryTileThatMayContainX) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> across(-0.5F, 63.5F), anywhere(-100.0F, 200.0F);
   for (const std::uint32_t count : {1U, 16U, 40U, 256U, 1000U, 4096U}) {

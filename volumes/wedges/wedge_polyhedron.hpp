@@ -31,7 +31,7 @@ mpq_class height_of(const Plane& plane, const ExactPoint& p);
 /// Returns the sign of height_of(plane, p): computed in double where the result is certain.
 int side_of(const Plane& plane, const ExactPoint& p);
 
-/// Returns the sign of (a, b, c; p).
+/// Returns on which side of the plane through a, b and c the point p is: 1, −1, or 0 if p is on the plane.
 int orientation(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const ExactPoint& p);
 
 struct PolyhedronFace {
@@ -58,8 +58,8 @@ Polyhedron cut_box(const Box& box, std::span<const Plane> planes);
 /// (no corner outside a face) or oriented outward; nullopt if the polyhedron is all three. Exact.
 std::optional<std::string> flaw_of(const Polyhedron& polyhedron);
 
-/// Returns whether p is inside or on the mesh, by the side of three corners of each face, independent of the planes of
-/// the construction. Exact.
+/// Returns whether p is inside or on the mesh, computed from the corners of the faces alone (on which side of each face
+/// p is), without the planes of the construction. Exact.
 bool mesh_holds(const Polyhedron& polyhedron, const glm::dvec3& p);
 
 }  // namespace penumbra::volumes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shared by C++ and GLSL: push constants of the shaders of penumbra_events.cpp, and the part read by a look-up.
+// Shared by C++ and GLSL: push constants of the shaders of penumbra_events.cpp.
 #include "maps/host/map_view.shared.h"
 #ifdef __cplusplus
 #pragma once
@@ -14,7 +14,7 @@ struct EventsPush {
   uint texel_count;
   uint capacity;     // largest number of events of a texel
   uint first_point;  // first of the samples whose maps are traversed
-  uint first_map;    // first map of this sample, in the buffer of maps, in faces
+  uint first_map;    // index, counted in faces, at which the maps of sample first_point begin in the buffer
   uint point_count;
   uint sample_faces;  // of one sample
   vec2 nearest;       // depth of the nearest caster to the light's plane, on either side
@@ -32,7 +32,7 @@ struct CompressPush {
   uint texel_count;
   uint capacity;
   uint total;      // sum of all weights
-  uint tolerance;  // twice the bound, in weights
+  uint tolerance;  // twice the permitted error of V (PenumbraEvents' `bound`), as a sum of weights
 };
 
 struct CopyStepsPush {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares sums of the receiver's silhouettes, over meshes with every defect and over real ones, with triangles one by
-// one and with the exact union.
+// Computes V by summing over the silhouettes seen from the receiver, for broken and for real meshes, and compares it
+// with the sum over single triangles and with the exact union.
 
 #include "mesh/shapes/broken_meshes.hpp"
 #include "mesh/diagnosis/diagnosis.hpp"
@@ -22,7 +22,8 @@ namespace {
 
 const std::filesystem::path kMeshes = std::filesystem::path(PENUMBRA_CGAL_CORPUS) / "meshes";
 
-/// Returns the mesh, scaled to at most 1 from the origin, over a floor under one light of each kind that has a plane.
+/// Returns the mesh, scaled to at most 1 from the origin, over a floor and under one light: a rectangle (`lamp` 0), a
+/// disk (1) or a polygon (2).
 scenes::Scene scene_of(const mesh::TriangleSoup& soup, int lamp) {
   scenes::Scene scene;
   tests::add_object(scene, "floor", tests::quad({0, -1.125, 0}, {4, 0, 0}, {0, 0, 4}));
@@ -107,7 +108,8 @@ void check(const std::string& name, const mesh::TriangleSoup& soup, int count, T
 
 void print(const Tally& tally) {
   fmt::print(
-      "{} samples, {} partly lit, {} of them with a single layer; {:.1e} off at most, centre silhouettes {:.4f}\n",
+      "{} samples, {} partly lit, {} of them with a single layer; {:.1e} off at most; silhouettes from the centre "
+      "differ by up to {:.4f}\n",
       tally.points, tally.partly, tally.single, tally.worst, tally.largest_difference);
 }
 

@@ -57,8 +57,8 @@ constexpr Identity kIdentities[] = {
     {"dual", "contour:depth=dual:bias=0", Is::same, "contour:bias=0"},
     {"A9", "bitmask:bias=0", Is::no_brighter, "bitmask:depth=midpoint:bias=0"},
 };
-/// More identities, for the long test. (Without a bias the shadows of closed and of open things begin at or behind the
-/// first surface.)
+/// More identities, for the long test. (For those with bias=0: without a bias, the shadows of closed and of open meshes
+/// begin at or behind the first surface.)
 constexpr Identity kMoreIdentities[] = {
     {"I1", "soft-shadow-map:passes=2:filter=nearest", Is::no_brighter, "soft-shadow-map:filter=nearest"},
     {"I3", "packet", Is::same, "contour:search=none:traversal=flat"},
@@ -109,7 +109,7 @@ constexpr Levels kLevels[] = {{"shadow-map", 1}, {"pcf:window=5", 25},       {"p
                               {"bitmask", 0},    {"layer-rays:layers=2", 0}, {"bitmask:occluder=rect:level=1", 0},
                               {"accumulate", 0}, {"layered-attenuation", 0}, {"deep-penumbra:bound=0", 0}};
 
-/// Variants for the test of what no picture may depend on.
+/// Variants for the test that pictures do not depend on order, winding, tiles and repetition.
 constexpr const char* kVariants[] = {"shadow-map",
                                      "shadow-map:test=id",
                                      "accumulate",
@@ -237,7 +237,7 @@ class MapsIdentities : public MapsTest {
       const double count = levels.of != 0 ? levels.of : place.stage.light.sample_count();
       std::set<float> values(found->visibility.begin(), found->visibility.end());
       for (const float v : values) {
-        // V is the float nearest to the share of a whole number.
+        // V is the float nearest to k / count for a whole number k.
         EXPECT_EQ(v, static_cast<float>(std::round(count * static_cast<double>(v)) / count))
             << place.name << ", I10: " << levels.variant;
       }
@@ -269,7 +269,7 @@ TEST_F(MapsIdentities, HoldBetweenVariants) {
 
 // A texel outside the kernel whose diagonal neighbour is outside, too, and nearer than all texels in the kernel; this
 // scene has one.
-TEST_F(MapsIdentities, ASearchKnowsWhatDiagonalsReach) {
+TEST_F(MapsIdentities, ASearchFindsTexelsReachedOnlyThroughDiagonals) {
   constexpr Identity kDiagonals[] = {
       {"I5", "backproject:search=ysm:fill=diagonal", Is::same_or_black, "backproject:search=none:fill=diagonal"},
       {"I5", "bitmask:search=ysm:fill=diagonal:occluder=patch", Is::same_or_black,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tests maps drawn by Vulkan and by OpenGL: against the triangles in double, against each other, and by the V that
-// methods compute from them. Also tests the twin itself with triangles whose coverage is known.
+// methods compute from them. Also tests RasterTwin, the rasteriser in double that they are compared with, on triangles
+// whose coverage is known.
 
 #include "base/error.hpp"
 #include "maps/filters/methods.hpp"
@@ -39,7 +40,7 @@ maps::gpu::CasterPush straight() {
 
 // The diagonal of a square passes through the centres of a map's own diagonal texels: these are undecided, all others
 // certain.
-TEST(RasterTwin, IsSureButWithinAStepOfAnEdge) {
+TEST(RasterTwin, IsSureExceptWithinAStepOfAnEdge) {
   constexpr std::uint32_t kSize = 16;
   const std::vector<glm::vec3> corners{{-2, -2, 2}, {2, -2, 2}, {2, 2, 2}};  // below the diagonal, z / far = 1/2
   for (const double step : {1.0 / 256, 1.0 / 16}) {
@@ -95,7 +96,7 @@ TEST(RasterTwin, JudgesWhatAMapHolds) {
                                       {.depth = 0.6, .low = 0.59, .high = 0.61, .sure = true}};
   using selftest::judge_behind, selftest::judge_farthest, selftest::judge_nearest;
   EXPECT_TRUE(judge_nearest(surfaces, 0.3).right);
-  EXPECT_TRUE(judge_nearest(surfaces, 0.205).right) << "perhaps";
+  EXPECT_TRUE(judge_nearest(surfaces, 0.205).right) << "a surface that may cover this texel is an allowed answer";
   EXPECT_FALSE(judge_nearest(surfaces, 0.6).right) << "behind one that is surely there";
   EXPECT_FALSE(judge_nearest(surfaces, 0.25).right);
   EXPECT_FALSE(judge_nearest(surfaces, 1).right);
@@ -188,7 +189,8 @@ std::vector<Named> every_method() {
 // V is a function of the maps: for the same texels it is the same in every bit. Mesa's two drivers are one rasteriser
 // with two compilers; they cover the same texels, and depths differ in the last bit. That changes a depth test only
 // where a receiver lies within a rounding (10⁻⁷ of the depth) of its threshold, and in these maps thresholds are spread
-// over 10⁻⁴ of the depth and more: fewer than one tap in a thousand, and as much of V in the mean.
+// over 10⁻⁴ of the depth and more: so fewer than one tap in a thousand changes, and V changes by less than a thousandth
+// in the mean.
 TEST_F(MapsRasterisers, EveryMethodGivesTheSameVOfTheSameMaps) {
   const Stage stage(crowd_with_needles(false, false), 24, 24, light_samples(16));
   const selftest::Check texels = selftest::check_rasterisers_agree(device(), stage, 32);

@@ -41,7 +41,8 @@ glm::dvec2 on_square(const glm::dvec2& disk) {
   return 0.5 + 0.5 * turned[static_cast<std::size_t>((quarter + 4) % 4)];
 }
 
-/// Each of a pixel's side × side · moments points is alone in its cell, in its column and in its row.
+/// A pixel has side × side points in each of `moments` pictures that are averaged. No two of its points share a cell, a
+/// column or a row.
 TEST(Lens, PointsOfAPixelAreEvenlySpread) {
   const std::vector<std::array<std::uint32_t, 4>> layouts = {
       // side, moments, columns, rows

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exact areas for view samples whose share double cannot prove, made on first use.
+// Exact areas (in integers), for view samples at which double precision is not enough to be certain of the visible
+// share. They are prepared on first use.
 
 #include "volumes/scatter/vectors/areas_on_demand.hpp"
 

@@ -19,7 +19,7 @@ struct PointScratch {
   std::vector<std::uint32_t> touched;
 };
 
-/// Computes masks as scatter does.
+/// Computes masks, like scatter() in scatter.hpp, but for light samples that are not in rows.
 void scatter_points(const ClusterInput& input, EdgeScratch& found, PointScratch& scratch, OpenJudge& judge,
                     std::span<SampleMask> masks);
 
