@@ -145,9 +145,9 @@ def questions():
                ("alias-free", f"shadow-map:size={size}"))
     yield ("course notes, 4.2.4", "`vssm:moments=csm` over `moments=esm`, map 1024², bunny", "2 to 3", standing(bunny(), 0.5), 256, [],
            ("vssm:moments=csm:size=1024", "vssm:moments=esm:size=1024"))
-    yield ("course notes, 5.3.2.3", "`soft-volume` by table over by arc cosines, a ball", "above 1", standing(ball(y=1.2), 0.5), 512, [],
+    yield ("course notes, 5.3.2.3", "`soft-volume` with the table over `soft-volume` with arc cosines, a ball", "above 1", standing(ball(y=1.2), 0.5), 512, [],
            ("soft-volume:coverage=table", "soft-volume"))
-    yield ("course notes, 5.3.3.2", "`view-sample` without the triangles that face all of the light over all of them, a bumpy ball of 32k triangles", "0.5",
+    yield ("course notes, 5.3.3.2", "`view-sample` without the triangles that face all of the light, over `view-sample` with all triangles, a bumpy ball of 32k triangles", "0.5",
            (bumpy_ball(without_front=True), bumpy_ball()), 256, ["--light-samples", "256"], ("view-sample", "view-sample"))
 
 

@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "docs/figures"))
 from compared import error_rows, visibility_rows  # noqa: E402
 from png import write_png  # noqa: E402
 
-# Texels a side, and what there is of each fit at about as many texels in all.
+# Each fit with its texels a side, chosen so that all fits have about as many texels in all.
 ROWS = [("receivers", 256), ("view", 256), ("cascades", 128), ("lispsm", 256), ("tsm", 256), ("psm", 256), ("logpsm", 256),
         ("tiles", 64), ("faces", 114)]
 COLUMNS = 3

@@ -190,8 +190,8 @@ class Joiner {
   }
 
   /// Calls `visit` with each set of half-edges at the edge that have the same key, if the set is more than one joined
-  /// pair. If `key` is the pair of indices at the edge's ends, these indices would not determine which triangles are
-  /// joined.
+  /// pair. For such a set, with the pair of indices at the edge's ends as key, indices alone do not tell which
+  /// triangles are joined.
   template <typename Key, typename Visit>
   void for_each_crowd(std::uint32_t edge, Key key, Visit visit) const {
     if (graph_.around(edge).size() < 2) return;
@@ -205,8 +205,9 @@ class Joiner {
     }
   }
 
-  /// Where a surface touches itself along one edge and is one fan around both ends, which indices cannot represent,
-  /// cuts off all triangles but one pair, each one separately. Returns whether there was such an edge.
+  /// Finds edges along which a surface touches itself while its corners at both ends are joined (one fan each), which
+  /// indices cannot represent; there it cuts off all triangles but one pair, each one separately. Returns whether there
+  /// was such an edge.
   bool detach_crowded() {
     std::set<std::uint32_t> detached;
     const auto detach_all_but_a_pair = [&](std::span<const std::uint32_t> crowd) {

@@ -19,8 +19,8 @@ struct Variant {
   visibility::MethodDescription method;
 };
 
-/// Returns the variants: each option by itself, with each of its choices; for a number, with the first of the two least
-/// values and the greatest that has an effect.
+/// Returns the variants: each option by itself, with each of its choices; for an integer, with the first of these
+/// values that has an effect: the least, the least plus 1, the greatest.
 std::vector<Variant> variants_of(const visibility::MethodDescription& method);
 
 /// Returns the JSON printed by `methods --json`.

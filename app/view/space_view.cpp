@@ -69,7 +69,7 @@ SpaceShadows parse_space_shadows(std::string_view target) {
 const visibility::SceneFloats& SpaceView::floats_of(const LiveScenery& scenery) {
   if (!scenery.whole->instances.empty())
     throw UsageError(
-        "the 3D view does not draw instances without copies, of which there are {} here (--instances copies)",
+        "this scene has {} instances that share their meshes, which the 3D view cannot draw; use --instances copies",
         scenery.whole->instances.all.size());
   if (scene_ == scenery.whole) return floats_;
   scene_.reset();

@@ -100,7 +100,7 @@ CasterMaps::CasterMaps(const render::Device& device, std::uint32_t size, Rasteri
 }
 
 void CasterMaps::pass(const visibility::AllTriangles& all, visibility::PassTimes& times) {
-  PENUMBRA_ASSERT(!opengl_, "OpenGL draws triangles of a whole scene");
+  PENUMBRA_ASSERT(!opengl_, "OpenGL draws only uploaded triangles, not those that are passed in parts");
   all_ = &all;
   times_ = &times;
   batches_.clear();
@@ -191,7 +191,7 @@ void CasterMaps::record_faces(render::Commands& commands, MapLayer layer, std::s
   if (faces.empty()) return;
   commands.host_pass(pass_name(layer), [&] {
     for (std::uint32_t face = 0; face < faces.size(); ++face) {
-      PENUMBRA_ASSERT(!faces[face].logarithmic, "OpenGL draws no rows of logarithms");
+      PENUMBRA_ASSERT(!faces[face].logarithmic, "OpenGL does not draw logarithmic faces");
       draw_by_opengl(layer, offset(faces[face].plain), light_index, face, to);
     }
   });
@@ -240,7 +240,7 @@ void CasterMaps::record_on_device(render::Commands& commands, MapLayer layer, co
 /// Depths are minima, or maxima, which do not depend on the order of triangles.
 void CasterMaps::record_passing(render::Commands& commands, MapLayer layer, const FacePush& push,
                                 std::int32_t light_index, std::uint32_t face, const Destination& to) const {
-  PENUMBRA_ASSERT(!push.logarithmic, "logarithmic faces of triangles that pass");
+  PENUMBRA_ASSERT(!push.logarithmic, "logarithmic faces need uploaded triangles, not those that are passed in parts");
   constexpr std::size_t kMost = std::size_t{1} << 20;  // triangles of one draw: 36 MiB
   const std::uint64_t face_texels = std::uint64_t{size_} * size_;
   std::vector<glm::vec3> corners;

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Compares methods with a map from each light sample with numpy: accumulate (Heckbert and Herf 1997), the mean of hard
+"""Compares methods that render a map from each light sample to their copies in numpy: accumulate (Heckbert and Herf 1997), the mean of hard
 shadows, and deep-penumbra (St-Amour, Paquette and Poulin 2005), which along the ray through a texel's centre counts, at
 every depth, the samples whose map shows nothing nearer. Scenes and maps are those of backprojection.py and layers.py; V
 is that of the floor.

@@ -62,10 +62,10 @@ class FormFactorLoop {
 /// A curved edge: part of an ellipse's rim, center + cos φ u + sin φ v, from the angle `from` to `from` + `arc`
 /// (radians). All of it must be above the element's plane.
 ///
-/// By quadrature: n · (r × r′) / |r|² is analytic in φ except where |r|² = 0, which is farther away than δ = ln(1 + (√2
-/// − 1) |r| / (|u| + |v|)): |r(φ + ε) − r(φ)| ≤ (|u| + |v|) (e^|ε| − 1), and r · r = 0 needs a change of (√2 − 1) |r|.
-/// Ten points (Gauss, Legendre) on a piece of half-length h ≤ δ / 3.3 leave an error of (3.3 + √(3.3² − 1))⁻²⁰ = 5e-17
-/// of the integrand's size there; pieces are halved until that holds.
+/// By quadrature: n · (r × r′) / |r|² is analytic in complex φ except where r · r = 0, which is farther from the real
+/// axis than δ = ln(1 + (√2 − 1) |r| / (|u| + |v|)): |r(φ + ε) − r(φ)| ≤ (|u| + |v|) (e^|ε| − 1), and r · r = 0 needs a
+/// change of (√2 − 1) |r|. Ten points (Gauss, Legendre) on a piece of half-length h ≤ δ / 3.3 leave an error of (3.3 +
+/// √(3.3² − 1))⁻²⁰ = 5e-17 of the integrand's size there; pieces are halved until that holds.
 struct FormFactorArc {
   glm::dvec3 center{0}, u{0}, v{0};  ///< relative to the element
   double from = 0, arc = 0;
@@ -77,7 +77,7 @@ double form_factor(std::span<const glm::dvec3> corners, const glm::dvec3& n);
 
 /// A disk whose plane does not contain the element, for either of its sides: form_factor() is never negative. In closed
 /// form, with or without a horizon: with h its height, ρ the element's distance from its axis, A = R² + ρ² + h² and B =
-/// 2ρR, the integral along the rim is one of 1, cos φ and sin φ over A − B cos φ.
+/// 2ρR, the integrands along the rim are 1, cos φ and sin φ, each divided by A − B cos φ.
 struct FormFactorDisk {
   glm::dvec3 center{0};  ///< relative to the element
   glm::dvec3 normal{0};  ///< unit

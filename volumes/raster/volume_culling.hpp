@@ -32,9 +32,9 @@ LeanVolumes culled_by_hierarchy(const visibility::SceneFloats& scene, const Shad
                                 const visibility::TriangleTree& tree, const visibility::Light& light,
                                 const visibility::ViewSamples& samples);
 
-/// S. Laine 2005, split-plane shadow volumes: for each caster, the plane through its middle and l divides the view
-/// samples. For those nearer to the eye than the plane, faces between the eye and them are counted; for the others,
-/// faces beyond them.
+/// S. Laine 2005, split-plane shadow volumes: for each caster, the plane through its middle and the light's centre l
+/// divides the view samples. For those nearer to the eye than the plane, faces between the eye and them are counted;
+/// for the others, faces beyond them.
 LeanVolumes split_by_planes(const ShadowCasters& casters, const visibility::Light& light,
                             const visibility::ViewSamples& samples);
 

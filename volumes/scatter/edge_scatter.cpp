@@ -34,8 +34,9 @@
 namespace penumbra::volumes {
 namespace {
 
-constexpr std::uint32_t kBlock = 8;           // in pixels, as in edge_scatter.glsl
-constexpr std::uint32_t kMostBandWords = 16;  // words for 64 light rows: the capacity of a question
+constexpr std::uint32_t kBlock = 8;  // in pixels, as in edge_scatter.glsl
+/// Words for 64 light rows, as many as one RowQuestion (pairs left for the host to decide) can name.
+constexpr std::uint32_t kMostBandWords = 16;
 
 constexpr visibility::ChoiceOption kExactRows{
     "rows",
@@ -188,8 +189,8 @@ class EdgeScatter final : public EdgeMethod {
     return open;
   }
 
-  /// Questions about single samples of a band are ignored if the whole band is a question: a driver may have ended the
-  /// loop that asks them.
+  /// Entries for single samples of a band are ignored if the whole band is left to the host: the list may be
+  /// incomplete, as a driver may have ended the loop that asks them.
   std::vector<device::OpenBits> open_points(std::uint32_t count) {
     std::vector<gpu::PointQuestion> asked(count);
     questions().read(std::span(asked));

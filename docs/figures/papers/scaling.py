@@ -20,7 +20,7 @@ SAMPLES = 256
 
 
 def run(runner, scene, size, runs):
-    """Medians of processor seconds and of the largest resident set in MiB. The program itself says how much that was: the
+    """Medians of processor seconds and of the largest resident set in MiB. The resident set is what the program itself reports: the
     system's number for a child begins with the size of the process that started it."""
     seconds, resident = [], []
     width, height = size if isinstance(size, tuple) else (size, size)
@@ -63,7 +63,7 @@ def machine():
 
 
 def measure_triangles(runner):
-    """Rows of triangles, processor seconds and MiB; the first is a terrain of two triangles, what every picture costs."""
+    """Rows of triangles, processor seconds and MiB; the first, a terrain of two triangles, shows the cost that every picture has."""
     rows = []
     for cells in ((1, 1), *TERRAIN):
         scene = shipped("terrain-1m")
@@ -78,25 +78,25 @@ def measure_triangles(runner):
 
 
 def measure_pixels(runner):
-    """Rows of pixels, pixels in penumbra, processor seconds and MiB; the first of 16², what every picture costs."""
+    """Rows of pixels, pixels in penumbra, processor seconds and MiB; the first row, of 16² pixels, shows the cost that every picture has."""
     scene = shipped("bunny")
     sizes = {}
     for side in (16, *SIDES):
         pixels = side[0] * side[1] if isinstance(side, tuple) else side * side
         sizes[pixels] = run(runner, scene, side, 3 if pixels < 2e6 else 1)
         print("pixels", pixels, *sizes[pixels], flush=True)
-    # Last: the system counts what this script holds when it starts a program as that program's own.
+    # Last, because the memory that this script holds when it starts a program is counted as that program's memory.
     share, wide = penumbra_share(runner, scene, "256x256"), penumbra_share(runner, scene, "480x270")
     shares = [wide if pixels == 3840 * 2160 else share for pixels in sizes]
     rows = [[pixels, round(part * pixels), rounded(seconds), rounded(resident)]
             for part, (pixels, (seconds, resident)) in zip(shares, sizes.items())]
     runner.device = machine()
     runner.commands.append(f"penumbra render scenes/bunny.json, edge-scatter, {SAMPLES} light samples")
-    return {"of": f"bunny, {SAMPLES} light samples; {100 * share:.1f} % of the pixels in penumbra, of 4K {100 * wide:.1f} %", "rows": rows}
+    return {"of": f"bunny, {SAMPLES} light samples; {100 * share:.1f} % of the pixels in penumbra, at 4K {100 * wide:.1f} %", "rows": rows}
 
 
 def measure_lights(runner):
-    """Rows of lights, processor seconds and MiB: squares in a circle above the default scene's bunny, all of them its light's
+    """Rows of lights, processor seconds and MiB: squares in a circle above the default scene's bunny, all as large as that scene's light,
     size."""
     rows = []
     for count in LIGHTS:
@@ -116,14 +116,14 @@ def measure_lights(runner):
 
 
 def step_for(values):
-    """A round number, four of which hold the largest."""
+    """Returns a round step, such that four steps reach the largest value."""
     least = 1.05 * max(values) / 4
     power = 10 ** floor(log10(least))
     return next(k * power for k in (1, 2, 2.5, 5, 10) if k * power >= least)
 
 
 def two_charts(title, text, xs, left, right, x_label, ticks, names=None):
-    """`left`, `right`: title, curves of a name and points."""
+    """`left`, `right`: a title, and curves, each with its name and points."""
     d = Drawing(900, 350, title, text)
     for i, (heading, curves) in enumerate((left, right)):
         step = step_for([y for _, points in curves for _, y in points])
@@ -140,7 +140,7 @@ def two_charts(title, text, xs, left, right, x_label, ticks, names=None):
 def draw_triangles(data):
     (_, seconds, resident), *rows = data["rows"]
     return two_charts("Cost against triangles", data["of"] + "; less what a terrain of two triangles takes", (8e3, 1.6e7),
-                      ("microseconds of a processor a triangle", [("", [(t, 1e6 * (s - seconds) / t) for t, s, _ in rows])]),
+                      ("processor microseconds per triangle", [("", [(t, 1e6 * (s - seconds) / t) for t, s, _ in rows])]),
                       ("resident bytes a triangle", [("", [(t, 2**20 * (m - resident) / t) for t, _, m in rows])]),
                       "triangles", (1e4, 1e5, 1e6, 1e7), ("10⁴", "10⁵", "10⁶", "10⁷"))
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// A scene for tests of soft shadow volumes, with their C++ twin and the exact areas.
+// A scene for tests of soft shadow volumes, with V by a C++ implementation of the same method and by exact areas.
 
 #include "mesh/shapes/shapes.hpp"
 #include "areas/exact_area.hpp"
@@ -35,7 +35,7 @@ struct SoftStage : Stage {
     return tests::run(method, *this, rows).visibility;
   }
 
-  /// Returns V of judged pixels by `of`, NaN elsewhere.
+  /// Returns `of(pixel)` for pixels of class `judged` (docs/definitions.md), NaN elsewhere.
   template <typename Of>
   [[nodiscard]] std::vector<double> at_judged(const Of& of) const {
     std::vector<double> result(samples.size(), std::numeric_limits<double>::quiet_NaN());

@@ -199,7 +199,7 @@ TEST_F(SphereForm, AHalfPlaneHidesASegmentTimesHalfPi) {
       rays = std::max(rays, std::abs(v - by_rays));
       partly += v > 0 && v < 1 ? 1 : 0;
     }
-    fmt::print("{} behind a half-plane: off by {:.4f} of {:.4f}, of rays' share times pi / 2 by {:.4f}\n",
+    fmt::print("{} behind a half-plane: off by {:.4f} of {:.4f}, and by {:.4f} of pi / 2 times the rays' share\n",
                ball ? "sphere" : "disk", worst, bound, rays);
     RecordProperty(ball ? "sphere" : "disk", fmt::format("{:.4f} of {:.4f}", worst, bound));
     EXPECT_LT(worst, bound);
