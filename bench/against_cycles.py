@@ -404,7 +404,7 @@ is interpolated, and what is out of focus is noisy.
 
 One object moves by a quarter of a metre while the shutter is open, at even speed, seen at pixels' centres; the crop is where most shadow moves. The program
 takes 16 moments (`--motion-samples 16`) of an exchange file to which an animation was added; the add-on lets Blender evaluate as many moments ([how](blender.md#motion-blur)). Cycles
-exposes 254 of 256 parts of the time that it is told, from its start on (found by measuring), and Penumbra's shutter is open for the same time.
+exposes 254 of 256 parts of the shutter time that it is given, counted from the start (found by measuring), and Penumbra's shutter is open for the same time.
 
 {motion}
 """

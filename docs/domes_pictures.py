@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/images/domes.png: scenes/skies/knot.json under each of its domes by itself, side by side, and the picture of the sky that
-one of them has, scenes/skies/evening.hdr, which is computed here. Python's standard library is all that it needs.
+"""Makes docs/images/domes.png: scenes/skies/knot.json under each of its domes alone, side by side. Also computes
+scenes/skies/evening.hdr, the picture of the sky of one of these domes. Needs only Python's standard library.
 
   docs/domes_pictures.py [build/penumbra]          a few seconds"""
 
@@ -27,7 +27,7 @@ def mix(a, b, share):
 
 
 def radiance(direction):
-    """An evening: blue above, warm about a low sun, brown below."""
+    """Returns the radiance of an evening sky: blue above, warm around a low sun, brown below."""
     x, y, z = direction
     length = math.sqrt(sum(part * part for part in SUN))
     angle = math.acos(max(-1.0, min(1.0, sum(a * b for a, b in zip(direction, SUN)) / length)))
@@ -41,14 +41,14 @@ def radiance(direction):
 
 
 def rgbe(color):
-    """The four bytes of a Radiance picture's pixel."""
+    """Returns the four bytes of a pixel in a Radiance picture."""
     mantissa, exponent = math.frexp(max(color))
     scale = mantissa * 256 / max(color)
     return bytes(int(part * scale) for part in color) + bytes([exponent + 128])
 
 
 def runs(values):
-    """Run-length encoded as one channel of a scan line is: literals of up to 128 values, runs of 4 to 127."""
+    """Returns one channel of a scan line, run-length encoded: literals of up to 128 values, runs of 4 to 127."""
     out, at = bytearray(), 0
     literal = bytearray()
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of docs/error-budget.md: error_budget_pictures.py PROGRAM, with chromium installed (packages.txt). bench/page_tables.py makes the tables
-from the same runs."""
+"""Makes the picture of docs/error-budget.md: error_budget_pictures.py PROGRAM, with chromium installed (packages.txt). bench/page_tables.py makes
+the page's tables from the same runs."""
 import pathlib
 import subprocess
 import sys

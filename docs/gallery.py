@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/gallery.md and its pictures: the small Blender scenes of tests/blender/scenes.py by the add-on, by Cycles, and the
-ratio of the two. Needs Blender, numpy, and a built program and add-on.
+"""Makes docs/gallery.md and its pictures: the small Blender scenes of tests/blender/scenes.py, rendered by the add-on and by
+Cycles, and the ratio of the two pictures. Needs Blender, numpy, and a built program and add-on.
 
   docs/gallery.py [build]          some minutes"""
 
@@ -19,7 +19,7 @@ sys.path[:0] = [str(ROOT / "docs/figures"), str(ROOT / "blender")]
 from penumbra import exr  # noqa: E402
 from png import write_png  # noqa: E402
 
-# Blue and red where ours is a tenth darker and brighter.
+# Relative difference with full colour: blue where Penumbra is darker by this, red where it is brighter.
 RANGE = 0.1
 
 
@@ -36,7 +36,7 @@ def for_eyes(colors, alpha, exposure):
 
 
 def of_ratio(ours, theirs, alpha):
-    """White where both are the same, or nothing is seen."""
+    """Returns colours of the ratio: white where both pictures are the same, or show no surface."""
     a, b = ours.sum(axis=-1), theirs.sum(axis=-1)
     off = numpy.clip(numpy.where(b > 0, a / numpy.maximum(b, 1e-30) - 1, (a > 0) * 1.0) / RANGE, -1, 1) * alpha
     shown = numpy.ones((*a.shape, 3)) * 255
@@ -59,8 +59,8 @@ def write_pictures(out, name):
 
 def sentence(row):
     if row["region"] == "umbra":
-        cycles = f"; Cycles {row['cycles']:.0e} of the brightest" if row["cycles"] > 0 else ", and in Cycles"
-        return f"umbra, {row['pixels']} pixels: nothing{cycles}"
+        cycles = f" in Penumbra; in Cycles {row['cycles']:.0e} of the brightest pixel" if row["cycles"] > 0 else " in either picture"
+        return f"umbra, {row['pixels']} pixels: no light{cycles}"
     return f"{row['region']}, {row['pixels']} pixels: {row['ratio']:.5f} ± {row['error']:.5f}"
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/images/lights.png: scenes/lights.json under each of its seven lights by itself, side by side, without light
-samples. Python's standard library is all that it needs.
+"""Makes docs/images/lights.png: scenes/lights.json under each of its seven lights alone, side by side, rendered without light
+samples. Needs only Python's standard library.
 
   docs/lights_pictures.py [build/penumbra]          a few seconds"""
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of docs/map-fits.md: map_fits_pictures.py PROGRAM. A long floor with plates over it, a camera near its end, a light so small that its
-shadows are hard: for each fit V's error, and 1/m, the inverse of the aliasing error. bench/page_tables.py makes the table from the same scene.
-Python's standard library is all that it needs."""
+"""Makes the picture of docs/map-fits.md: map_fits_pictures.py PROGRAM. The scene is a long floor with plates above it, a camera near the floor's end,
+and a light so small that its shadows are hard. For each fit the picture shows V's error, and 1/m, the inverse of the aliasing error.
+bench/page_tables.py makes the table from the same scene. Needs only Python's standard library."""
 import json
 import pathlib
 import subprocess
@@ -15,7 +15,7 @@ sys.path.insert(0, str(ROOT / "docs/figures"))
 from compared import error_rows, visibility_rows  # noqa: E402
 from png import write_png  # noqa: E402
 
-# Each fit with its texels a side, chosen so that all fits have about as many texels in all.
+# Fits, each with its texels per side, chosen so that all have about the same total number of texels.
 ROWS = [("receivers", 256), ("view", 256), ("cascades", 128), ("lispsm", 256), ("tsm", 256), ("psm", 256), ("logpsm", 256),
         ("tiles", 64), ("faces", 114)]
 COLUMNS = 3
@@ -36,7 +36,7 @@ def scene():
 
 
 def run(program, folder, aliasing):
-    """A picture of every fit: V's error, or V."""
+    """Returns a picture of each fit: V's error, or V."""
     entries = [f"shadow-map:size={size}:fit={fit}:aliasing={aliasing}" for fit, size in ROWS]
     (folder / "scene.json").write_text(json.dumps(scene()))
     out = folder / aliasing

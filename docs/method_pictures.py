@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Makes pictures of what methods get wrong, in PNGs. The strips of README.md (geometry, image): for each method V, and below it how far V is
-off, in docs/images/methods/, out of one comparison a strip. And the error maps of the methods' pages (pages): V, and beside it how
-far it is off where errors are judged, on a scene where that can be seen, in docs/images/errors/. Exact areas judge. Python's standard library is all
-that it needs.
+"""Makes PNG pictures of methods' errors. The strips of README.md (geometry, image) show V of each method, and below it the error of V;
+each strip is from one comparison, and they are written to docs/images/methods/. The error maps of the methods' pages (pages) show V, and
+to the right of it the error of V at judged pixels, on a scene where the error is visible; they are written to docs/images/errors/. The
+reference has exact areas. Needs only Python's standard library.
 
   docs/method_pictures.py [--program build/penumbra] [geometry] [image] [pages | PAGE…]          minutes each"""
 
@@ -25,7 +25,7 @@ from experiment import TRUTH, Runner, measures  # noqa: E402
 from png import write_png  # noqa: E402
 
 SCENE = "scenes/fusion.json"
-# Pixels on a side; how many of them, squared, become one; light samples; what is rendered.
+# For each strip: pixels per side; side of the square of pixels that are averaged into one; light samples; entries of `compare`.
 STRIPS = {
     "geometry": (320, 2, 256, ["edge-scatter", "edge-scatter:rows=exact", "view-sample", "depth-complexity", "soft-volume",
                           "soft-volume-blend", "wedge-ramp", "hard-volume", "pcss", "accumulate", "shadow-map", "raytrace"]),
@@ -34,7 +34,7 @@ STRIPS = {
                        "packet:size=128:sublights=2", "adaptive-light:size=128", "layered-attenuation:size=128", "deep-penumbra:size=128", "layer-rays:size=128",
                        "penumbra-map:size=256", "smoothies:size=256", "parker:size=256", "brabec-seidel:size=256", "kirsch-doellner:size=256", "arvo:size=256", "silhouette-map:size=256", "forward-map:size=256"]),
 }
-# Page: scene, light samples, one or two entries. Not `exact`: it is the judge.
+# Page: scene, light samples, one or two entries. The page `exact` is missing, since it describes the reference.
 PAGES = {
     "edge-scatter": ("large-penumbra", 64, ["edge-scatter", TRUTH]),
     "view-sample": ("thin", 64, ["view-sample"]),
@@ -81,18 +81,18 @@ PAGES = {
     "layered-attenuation": ("contact", 36, ["layered-attenuation:size=128"]),
     "deep-penumbra": ("contact", 36, ["deep-penumbra:size=128", "deep-penumbra:size=128:bound=0.2"]),
 }
-LIGHTS = {"skies/knot": ["--light", "around"]}  # of scenes with several: the first
-PAGE_SIZE, PAGE_LIMIT = 144, 0.5  # pixels on a side; the error of the deepest colour
-SIZES = {"papers/centred": 145}  # of scenes whose middle row and column of pixels matter
+LIGHTS = {"skies/knot": ["--light", "around"]}  # for scenes with several lights: selects the first
+PAGE_SIZE, PAGE_LIMIT = 144, 0.5  # pixels per side; the error with the deepest colour
+SIZES = {"papers/centred": 145}  # pixels per side for scenes that need a middle row and column
 # Colours of compare/error_picture.cpp.
 BACKGROUND = (96, 104, 116)
 TOO_BRIGHT = ((255, 255, 255), (188, 218, 236), (90, 163, 206), (33, 102, 172), (5, 40, 90))
 TOO_DARK = ((255, 255, 255), (253, 208, 180), (240, 130, 95), (190, 35, 45), (95, 0, 25))
-LEFT, TOP, RIGHT, BOTTOM = 0.05, 0.125, 0.925, 0.90625  # the part of the picture in which something happens
+LEFT, TOP, RIGHT, BOTTOM = 0.05, 0.125, 0.925, 0.90625  # the part of a strip's pictures that is shown
 
 
 def part(rows, factor):
-    """The part, each pixel the mean of factor² (of what is shown, not of light)."""
+    """Returns the shown part. Each of its pixels is the mean of factor² pixels, of their displayed colours, not of light."""
     size, out = len(rows), []
     for y in range(round(TOP * size), round(BOTTOM * size), factor):
         line = bytearray()
@@ -130,7 +130,7 @@ def error_color(error):
 
 
 def render_pages(program, pages):
-    """Pages with the same scene and light samples share a run."""
+    """Makes the pictures of pages. Pages with the same scene and light samples share a run."""
     runs = {}
     for page in pages:
         runs.setdefault(PAGES[page][:2], []).append(page)
@@ -146,7 +146,7 @@ def render_pages(program, pages):
 
 
 def write_page(page, found):
-    """Writes V of each entry, and beside it how far it is off."""
+    """Writes V of each entry, and to the right of it the error of V."""
     size = SIZES.get(PAGES[page][0], PAGE_SIZE)
     rows = [b""] * size
     for k, entry in enumerate(PAGES[page][2]):
@@ -164,7 +164,7 @@ def write_page(page, found):
 
 
 def file_name(entry):
-    """The method's name, with those of its options that change more than resolution and time."""
+    """Returns the method's name, with those of its options that affect more than resolution and time."""
     parts = [text for text in entry.split(":") if not text.startswith(("size=", "receiverSize=", "traversal="))]
     return "-".join(parts).replace("=", "-")
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Renders the moving picture of README.md, docs/images/moving-light.png: the sun of scenes/room.json moves on a circle. Left: the picture
-with exact shadows. Right: how far V under `pcss` is off for that sun, in the colours of the report. Needs numpy and the Python module:
+with exact shadows. Right: the error of V by `pcss` under that sun, in the colours of the report. Needs numpy and the Python module:
 
   PYTHONPATH=build/python docs/moving_light.py [--frames 16]          a minute"""
 
@@ -20,8 +20,8 @@ sys.path.insert(0, str(ROOT / "docs" / "figures"))
 from png import write_moving  # noqa: E402
 
 SIZE = (304, 228)
-CENTER, RADIUS = (1.0, 3.9, -6.5), (1.3, 0.7)  # of the circle on which the sun moves, in the plane of the window
-EXPOSURE, LIMIT = 2.6, 0.5  # exposure of the left picture; error that gets the deepest colour in the right one
+CENTER, RADIUS = (1.0, 3.9, -6.5), (1.3, 0.7)  # centre and radii of the sun's path, in the plane of the window
+EXPOSURE, LIMIT = 2.6, 0.5  # exposure of the left picture; the error with the deepest colour in the right one
 # Colours of compare/error_picture.cpp.
 TOO_BRIGHT = ((255, 255, 255), (188, 218, 236), (90, 163, 206), (33, 102, 172), (5, 40, 90))
 TOO_DARK = ((255, 255, 255), (253, 208, 180), (240, 130, 95), (190, 35, 45), (95, 0, 25))

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/options.md, every option of every method, from `penumbra methods --json`.
+"""Writes docs/options.md, the page with every option of every method, from `penumbra methods --json`.
 
   docs/option_tables.py [--program build/penumbra]            writes the page
-  docs/option_tables.py [--program build/penumbra] --check    exits 1 if the page is not what this script writes, or if a method's own page
-                                                              lacks one of its options, and refers to no page that owns the option
-                                                              (domes.md is that of all methods that do domes)"""
+  docs/option_tables.py [--program build/penumbra] --check    exits 1 if the page is not what this script writes, or if an option is
+                                                              neither on its method's page nor on a page for shared options to
+                                                              which the method's page refers (domes.md counts for every method
+                                                              that supports domes)"""
 
 import argparse
 import json
@@ -15,7 +16,7 @@ import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
-# Options that several methods share, by the page that says what they mean.
+# Options that several methods share, by the page that describes them.
 SHARED = {"map-fits.md": ("cascades", "split", "splitShare", "tiles", "refine", "changed", "focus"), "domes.md": ("suns",)}
 HEAD = """# Options of all methods
 
@@ -42,7 +43,7 @@ def section(method):
 
 
 def left_out(methods, folder=DOCS):
-    """Options that neither the method's page names nor a page that it refers to and that owns them."""
+    """Finds options that are neither on their method's page nor, if shared, on a page of SHARED to which this page refers."""
     for method in methods:
         page = (folder / f"{method['name']}.md").read_text(encoding="utf-8")
         pages = [name for name in SHARED if f"]({name}" in page] + (["domes.md"] if "dome" in method["lights"] else [])

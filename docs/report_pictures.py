@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The picture of docs/report.md: report_pictures.py PROGRAM, with chromium installed (packages.txt)."""
+"""Makes the picture of docs/report.md: report_pictures.py PROGRAM, with chromium installed (packages.txt)."""
 import pathlib
 import subprocess
 import sys

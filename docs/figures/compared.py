@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The pictures of a method that `compare` wrote, as rows of RGB bytes. Python's standard library alone."""
+"""Reads the pictures that `compare` wrote for a method, as rows of RGB bytes. Needs only Python's standard library."""
 
 import sys
 from pathlib import Path
@@ -13,17 +13,17 @@ BACKGROUND = bytes((96, 104, 116))  # of compare/error_picture.cpp
 
 
 def stem(entry):
-    """Names of files have no colon."""
+    """Returns the stem of an entry's file names, which contain no colons."""
     return entry.replace(":", ",")
 
 
 def error_rows(folder, entry):
-    """Signed error of V under the first light."""
+    """Returns the picture of the signed error of V under the first light."""
     return read_png((folder / f"{stem(entry)}-error.png").read_bytes())
 
 
 def visibility_rows(folder, entry):
-    """V in greys, with the background where the picture of the error has it."""
+    """Returns V in greys, with the background at the pixels where the error picture has it."""
     channels, (width, _) = read_exr(folder / f"{stem(entry)}.exr")
     rows = []
     for y, error in enumerate(error_rows(folder, entry)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figure of docs/exact.md: what of a trapezoid lies in a disk."""
+"""Figure of docs/exact.md: the part of a trapezoid inside a disk."""
 
 from math import atan2, cos, hypot, pi, sin, sqrt
 
@@ -11,12 +11,13 @@ def cross(a, b):
 
 
 def turn(a, b):
-    """The angle from a to b as seen from the centre."""
+    """Returns the angle from a to b as seen from the centre."""
     return atan2(cross(a, b), a[0] * b[0] + a[1] * b[1])
 
 
 def part_of_edge(a, b):
-    """(angle before, chord or None, angle after): what of the edge is inside, and what is drawn onto the rim."""
+    """Returns (angle before, chord or None, angle after): the part of the edge inside the disk (its chord), and the angles of the
+    parts before and after it, which are projected onto the rim."""
     length = hypot(b[0] - a[0], b[1] - a[1])
     along = ((b[0] - a[0]) / length, (b[1] - a[1]) / length)
     beside = cross(a, along)
@@ -34,7 +35,7 @@ def part_of_edge(a, b):
 
 def disk_figure():
     corners = [(-0.55, -0.45), (1.25, -0.45), (0.95, 0.55), (-0.2, 0.55)]
-    d = Drawing(780, 400, "What of a trapezoid lies in a disk")
+    d = Drawing(780, 400, "The part of a trapezoid inside a disk")
     d.text((20, 26), "A visible trapezoid (between two edges and two rows) on a round light", 14, bold=True)
     view = View(d, (20, 44, 420, 340), (-1.1, 1.4), (-1.05, 1.05))
     rim = arc((0, 0), 1, 0, 2 * pi, 96)
@@ -77,12 +78,12 @@ def disk_figure():
     assert abs(count * 4 / steps ** 2 - area) < 2e-3, "chords and angles are the part's boundary"
     x = 470
     d.legend((x, 96), [("line", GREEN, "inside: the edge itself, ½ *a* × *b*"),
-                       ("line", BLUE, "outside: the angle that it is seen at, ½ *φ*"),
+                       ("line", BLUE, "outside: the angle that it subtends, ½ *φ*"),
                        ("box", "#f7d98a", "the part in the disk")])
-    d.text((x, 176), "Each edge is for itself; nothing is decided", 12.5)
-    d.text((x, 193), "but how much of it is inside. Where chord and", 12.5)
+    d.text((x, 176), "Each edge is computed separately: only the", 12.5)
+    d.text((x, 193), "length inside the disk matters. Where chord and", 12.5)
     d.text((x, 210), "arc meet, both sweep the same area: an error *δ*", 12.5)
-    d.text((x, 227), "of that place costs *δ*².", 12.5)
+    d.text((x, 227), "of this place changes the area by *δ*².", 12.5)
     d.text((x, 268), f"area = {area:.6f}, of the disk {area / pi:.6f}", 13, bold=True)
     return d.finish()
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A small SVG writer for the figures of docs/: Python's standard library alone.
+"""A small SVG writer for the figures of docs/. It needs only Python's standard library.
 
-A Drawing has pixel coordinates, y down, and a white card behind everything, so that it can be read on a dark page too.
+A Drawing has pixel coordinates, y down, and a white background, so that it is legible on a dark page, too.
 A View maps the coordinates of a construction (y up) into a part of a Drawing."""
 
 from math import cos, hypot, sin
@@ -59,7 +59,7 @@ class Drawing:
                  f'{self.style(None, stroke, width, dash, opacity)}/>')
 
     def arrow(self, a, b, stroke=INK, width=1.5, head=7, dash=None, opacity=1):
-        """A line with a head at b."""
+        """Draws a line with an arrowhead at b."""
         length = hypot(b[0] - a[0], b[1] - a[1]) or 1
         dx, dy = (b[0] - a[0]) / length, (b[1] - a[1]) / length
         foot = (b[0] - dx * head, b[1] - dy * head)
@@ -72,14 +72,14 @@ class Drawing:
                  f'{self.style(fill, stroke, width, dash, opacity)}/>')
 
     def text(self, at, text, size=13, fill=INK, anchor="start", bold=False, halo=False):
-        """Text on its baseline. `a_bc` sets bc as an index, `*a*` sets a in italics."""
+        """Draws text on its baseline. `a_bc` sets bc as an index, `*a*` sets a in italics."""
         weight = ' font-weight="bold"' if bold else ""
         around = ' stroke="#ffffff" stroke-width="4" stroke-linejoin="round" paint-order="stroke"' if halo else ""
         self.raw(f'<text x="{number(at[0])}" y="{number(at[1])}" font-size="{number(size)}" fill="{fill}" '
                  f'text-anchor="{anchor}"{weight}{around}>{spans(str(text), size)}</text>')
 
     def legend(self, at, entries, size=12.5, step=19):
-        """Rows of (symbol, colour, text); symbol is dot, ring, box, line or dash."""
+        """Draws rows of (symbol, colour, text); symbol is dot, ring, box, line or dash."""
         x, y = at
         for symbol, colour, text in entries:
             middle = y - size * 0.35
@@ -102,7 +102,7 @@ class Drawing:
 
 
 def spans(text, size):
-    """`a_bc` and `*a*` as tspans; `\\_` is an underscore. What follows an index goes back up to the baseline."""
+    """Converts `a_bc` and `*a*` to tspans; `\\_` is an underscore. Text after an index returns to the baseline."""
     drop = number(size * 0.25)
     out, italic, lowered, i = "", False, False, 0
     while i < len(text):
@@ -164,6 +164,6 @@ class View:
 
 
 def arc(center, radius, start, end, steps=24):
-    """Points of an arc, angles in radians."""
+    """Returns points of an arc; angles are in radians."""
     return [(center[0] + radius * cos(start + (end - start) * i / steps),
              center[1] + radius * sin(start + (end - start) * i / steps)) for i in range(steps + 1)]

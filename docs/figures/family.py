@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""maps/README.md: the methods of the family by year, and who improves on whom."""
+"""Figure of maps/README.md: the methods of the family by year, and which method improves on which."""
 
 from drawing import BLUE, DARK, GREEN, INK, RED, Drawing
 
-# Method: year, where its middle is drawn, what it asks of the map. adaptive-light's paper has no year.
+# Method: year, position of its middle in the figure, its use of the map. adaptive-light's paper has no year.
 METHODS = {
     "shadow-map": (1978, (90, 235), "nearest depth"),
     "silhouette-map": (2003, (265, 128), "outlines between"),
@@ -31,7 +31,7 @@ METHODS = {
     "deep-penumbra": (2005, (680, 545), "V along rays"),
     "adaptive-light": (None, (680, 612), "maps where they differ"),
 }
-# Arrows: from, to, what the second repairs of the first.
+# Arrows: from one method to another, the second method's improvement on the first, colour.
 ARROWS = [
     ("shadow-map", "pcf", "soft edges", BLUE), ("pcf", "pcss", "width of penumbrae", BLUE), ("shadow-map", "silhouette-map", "straight edges", BLUE), ("pcss", "vssm", "no taps", BLUE), ("shadow-map", "forward-map", "", BLUE),
     ("shadow-map", "convolution", "areas", GREEN), ("convolution", "occlusion-textures", "several planes", GREEN),
@@ -44,7 +44,7 @@ ARROWS = [
     ("brabec-seidel", "arvo", "the map's resolution", INK),
 ]
 def family_figure():
-    d = Drawing(1000, 860, "The image-based family: who improves on whom",
+    d = Drawing(1000, 860, "The image-based family: which method improves on which",
                 "A graph from shadow-map of 1978 in five branches: filters (pcf, pcss, vssm; silhouette-map between texels, forward-map the other way round), images of slices (convolution, occlusion-textures), patches "
                 "projected back onto the light (soft-shadow-map, backproject, backproject-peel, bitmask, contour, packet, layer-rays), many maps (accumulate, layered-attenuation, "
                 "deep-penumbra, adaptive-light), and penumbrae around one hard shadow (parker, penumbra-map, smoothies, brabec-seidel, kirsch-doellner, arvo). Each arrow says what the later method repairs.")
@@ -61,7 +61,7 @@ def family_figure():
         d.text((x, y + 12), what, 9.5, DARK, "middle")
         if year:
             d.text((x, y + 32), year, 10, DARK, "middle", halo=True)
-    for y, text, colour in ((30, "one map, asked over a window", BLUE), (115, "images of slices", GREEN), (290, "patches of one map, back on the light", RED),
+    for y, text, colour in ((30, "one map, read over a window", BLUE), (115, "images of slices", GREEN), (290, "patches of one map, projected onto the light", RED),
                             (480, "maps from many points", DARK), (655, "penumbrae around one hard shadow", INK)):
         d.text((470 if colour == RED else 20, y), text, 12.5, colour, bold=True)
     return d.finish()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/pcf.md, vssm.md, convolution.md, occlusion-textures.md, adaptive-light.md, deep-penumbra.md, layered-attenuation.md."""
+"""Figures of docs/pcf.md, vssm.md, convolution.md, occlusion-textures.md, adaptive-light.md, deep-penumbra.md, layered-attenuation.md."""
 
 from math import floor
 
@@ -9,7 +9,7 @@ from texels import FLOOR, heights, truth
 
 
 def graph_of(d, box, xs, curves, label, left=-3.0, right=3.0):
-    """V over x on the floor: [(colour, [(x, V)])]."""
+    """Draws V over x on the floor. `curves`: [(colour, values of V at `xs`)]."""
     graph = View(d, box, (left, right), (0, 1.08), stretch=True)
     for v in (0, 1):
         graph.line((left, v), (right, v), PALE, 1)
@@ -21,7 +21,7 @@ def graph_of(d, box, xs, curves, label, left=-3.0, right=3.0):
 
 
 def pcf_figure():
-    """The course notes' figure 4.2: 42 of 49 texels are nearer than the receiver."""
+    """Draws the course notes' figure 4.2: 42 of 49 texels are nearer than the receiver."""
     d = Drawing(860, 330, "Percentage-closer filtering: a window of texels, each of them nearer or not",
                 "A map of depths around the receiver's texel; in a window of seven by seven 42 texels are nearer than the receiver and 7 are not: V = 7/49.")
     depth = {(i, j): 2.0 + 0.02 * i if i + 0.05 * j < 9.05 else 5.0 for i in range(13) for j in range(11)}
@@ -48,7 +48,7 @@ def pcf_figure():
 
 
 def vssm_figure():
-    d = Drawing(860, 380, "What mean and variance of a window say of the share of its texels beyond a depth",
+    d = Drawing(860, 380, "Chebyshev's bound of the share of texels beyond a depth, from mean and variance of a window",
                 "Two windows of depths. With two depths Chebyshev's bound is the share itself at the deeper one; with three the bound lets light through where "
                 "every texel is nearer.")
     d.text((20, 26), "A window's depths, the share that is not nearer than *t*, and Chebyshev's bound of it", 14, bold=True)
@@ -88,7 +88,7 @@ def convolution_figure():
     half, plane = 0.7, 2.5
     flat = [((-1.1, plane), (-0.35, plane)), ((0.15, plane), (0.6, plane))]
     d = Drawing(860, 470, "A flat blocker's picture, and the light's image that is moved over it",
-                "The share of the light's image at the blocker's plane that blockers cover is what is hidden: exactly, for a plane parallel to the light.")
+                "Blockers hide the share of the light by which they cover its image in their plane: exactly, for a plane parallel to the light.")
     d.text((20, 26), "For blockers in one plane, V is a mean over the light's image in that plane", 14, bold=True)
     view = View(d, (20, 45, 540, 250), (-3.0, 3.0), (-5.3, 0.3), stretch=True)
     view.line((-3, -FLOOR), (3, -FLOOR), DARK, 2)
@@ -167,7 +167,7 @@ def occlusion_textures_figure():
         d.text((x, 160 + 18 * k), f"slice {k + 1}: mean {part:.2f}", 12.5)
     d.text((x, 240), f"product {v:.2f}; true *V* = {truth(casters, (p, FLOOR), half):.2f}", 13, bold=True)
     d.legend((x, 370), [("line", RED, "product"), ("line", INK, "true *V*")])
-    d.text((20, 484), "What two slices of one surface hide is joined on the light; the product takes them for independent.", 12.5)
+    d.text((20, 484), "The hidden light is the union of what two slices of a surface hide; the product treats them as independent.", 12.5)
     return d.finish()
 
 
@@ -208,12 +208,12 @@ def adaptive_light_figure():
     for c, w in weights.items():
         view.dot(c, 26 * (w / total) ** 0.5, DARK if shades(*c) else LIGHT, stroke=INK, width=0.8)
     x = 400
-    d.legend((x, 80), [("dot", DARK, "light point from which p is hidden"), ("dot", LIGHT, "from which it is seen; areas are weights"), ("line", INK, "what hides a part of the light")])
+    d.legend((x, 80), [("dot", DARK, "light point from which p is hidden"), ("dot", LIGHT, "light point that p sees; areas are weights"), ("line", INK, "edge that hides a part of the light")])
     d.text((x, 165), f"{len(points)} maps of {(2 ** depth_most + 1) ** 2}", 14, bold=True)
     d.text((x, 195), f"hidden share, weighted 1/(2^d + 1)²: {hidden:.3f}".replace("^d", "ᵈ"), 12.5)
     d.text((x, 215), f"all points alike: {equal:.3f}", 12.5)
     d.text((x, 235), f"true: {real:.3f}", 12.5)
-    d.text((x, 275), "Of p alone; the method asks in how many pixels two", 12.5)
+    d.text((x, 275), "For p alone; the method counts the pixels in which two", 12.5)
     d.text((x, 292), "maps hold different depths, and adds maps until these", 12.5)
     d.text((x, 309), "are few.", 12.5)
     return d.finish()
@@ -248,7 +248,7 @@ def deep_penumbra_figure():
     held = [(sum(visible(FLOOR * (i + 0.5) / steps)) / count, FLOOR * (i + 0.5) / steps) for i in range(steps)]
     events = sum(a[0] != b[0] for a, b in zip(held, held[1:]))
     graph.path([(v, -z) for v, z in held], INK, 2)
-    # Greedy: a step reaches as far as the values that it stands for are within twice the bound of one another.
+    # Greedy: each step is as long as possible; the values that it replaces differ by at most twice the bound.
     bound, kept, start = 0.1, [], 0
     for i in range(1, steps + 1):
         values = [v for v, _ in held[start:i + 1]]
@@ -290,7 +290,7 @@ def layered_attenuation_figure():
             if 0 <= texel < texels and (texel, surface) not in seen:
                 seen.add((texel, surface))
                 lists[texel].setdefault(surface, [0, z])[0] += 1
-    d = Drawing(860, 420, "A layered attenuation map: what every light sample sees, warped to the centre and counted",
+    d = Drawing(860, 420, "A layered attenuation map: surfaces that light samples see, warped to the centre and counted",
                 "Texels of the centre's map with an entry for each surface; each entry says how many of six light samples see it.")
     d.text((20, 26), "Each entry of a texel counts the light samples that see its surface", 14, bold=True)
     view = View(d, (20, 50, 580, 330), (-4.0, 4.0), (-5.5, 0.4), stretch=True)

@@ -45,25 +45,25 @@ class Light:
         return add(self.c, add(mul(st[0], self.u), mul(st[1], self.v)))
 
     def project(self, p, x):
-        """(s, t) where the line from p through x meets the light's plane."""
+        """Returns (s, t) of the point where the line from p through x meets the light's plane."""
         d = sub(x, p)
         q = sub(add(p, mul(dot(sub(self.c, p), self.n) / dot(d, self.n), d)), self.c)
         return (det3(q, self.v, self.n) / dot(self.n, self.n), det3(self.u, q, self.n) / dot(self.n, self.n))
 
 
 def row_shift(row):
-    """visibility/sample_patterns.cpp, row_shift_of."""
+    """The same as row_shift_of in visibility/sample_patterns.cpp."""
     return ((row * 40503 + 32768) % 65536 - 32768) / 65536
 
 
 def rows_pattern(rows, columns, shifted=True):
-    """Light samples row by row, (s, t) in [−1, 1]²."""
+    """Returns light samples row by row, (s, t) in [−1, 1]²."""
     return [[(2 * (k + 0.5 + (row_shift(r) if shifted else 0)) / columns - 1, 2 * (r + 0.5) / rows - 1)
              for k in range(columns)] for r in range(rows)]
 
 
 def multiplicities(triangles, p):
-    """{(a, b): k} with a < b: the sum over an edge's triangles of +1 where the triangle, wound counter-clockwise as seen
+    """Returns {(a, b): k} with a < b: the sum over an edge's triangles of +1 where the triangle, wound counter-clockwise as seen
     from p, runs from a to b, and −1 where it runs from b to a. Triangles are triples of points."""
     k = {}
     for a, b, c in triangles:
@@ -80,12 +80,12 @@ def multiplicities(triangles, p):
 
 
 def area(polygon):
-    """Positive if counter-clockwise."""
+    """Returns the signed area, positive if the polygon is counter-clockwise."""
     return sum(det2(polygon[i - 1], polygon[i]) for i in range(len(polygon))) / 2
 
 
 def clip(polygon, n, d):
-    """The part of a convex polygon where n · x ≤ d (Sutherland and Hodgman)."""
+    """Returns the part of a convex polygon where n · x ≤ d (Sutherland and Hodgman)."""
     out = []
     for i, b in enumerate(polygon):
         a = polygon[i - 1]
@@ -98,7 +98,7 @@ def clip(polygon, n, d):
 
 
 def clip_to(polygon, convex):
-    """The part of a convex polygon inside another, counter-clockwise one."""
+    """Returns the part of a convex polygon inside another one, which is counter-clockwise."""
     for i in range(len(convex)):
         a, b = convex[i - 1], convex[i]
         n = (b[1] - a[1], a[0] - b[0])
@@ -109,7 +109,7 @@ def clip_to(polygon, convex):
 
 
 def inside(point, convex):
-    """Strictly inside a counter-clockwise convex polygon?"""
+    """Returns whether the point is strictly inside a counter-clockwise convex polygon."""
     return all(det2(sub(convex[i], convex[i - 1]), sub(point, convex[i - 1])) > 0 for i in range(len(convex)))
 
 
@@ -118,7 +118,7 @@ def counter_clockwise(polygon):
 
 
 def hull(points):
-    """The convex hull, counter-clockwise (Andrew's monotone chain)."""
+    """Returns the convex hull, counter-clockwise (Andrew's monotone chain)."""
     points = sorted(set(points))
     halves = []
     for order in (points, points[::-1]):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/alias-free.md, hierarchical-penumbra.md, view-sample-planar.md, soft-irregular.md, and the variant of view-sample.md: view
-samples in lists of light pixels, pairs of boxes, footprints, wedges and left-sample maps."""
+"""Figures of docs/alias-free.md, hierarchical-penumbra.md, view-sample-planar.md, soft-irregular.md, and of variant=sintorn in
+view-sample.md: view samples in lists of light pixels, pairs of boxes, footprints, wedges and left-sample maps."""
 
 from math import atan2, cos, floor, hypot, pi, sin
 
@@ -9,7 +9,7 @@ from geometry import SQUARE, clip_to, crosses, hull, inside, meet, rows_pattern
 
 
 def surface(x):
-    """The height of a ground with a step."""
+    """Returns the height of a ground with a step."""
     return 0.0 if x < 4.6 else 0.9
 
 
@@ -19,7 +19,7 @@ def alias_free_figure():
     casters = [((1.5, 2.2), (2.9, 2.5)), ((4.3, 2.9), (5.1, 2.5))]
     samples = [(0.55 * i + 0.15, surface(0.55 * i + 0.15)) for i in range(15)]
     d = Drawing(860, 470, "View samples in lists of light pixels")
-    d.text((20, 26), "Light pixels where view samples are, and lists of these", 14, bold=True)
+    d.text((20, 26), "Light pixels, each with a list of its view samples", 14, bold=True)
     view = View(d, (10, 40, 590, 420), (-1.2, 9.2), (-1.6, 6.5))
 
     def place(p):
@@ -44,7 +44,7 @@ def alias_free_figure():
                 tested.add(i)
                 if crosses(lamp, samples[i], a, b):
                     dark.add(i)
-    # The lists of what a footprint touches have all that the caster hides.
+    # The lists of the light pixels that footprints touch contain every view sample that a caster hides.
     assert dark == {i for i, p in enumerate(samples) if any(crosses(lamp, p, *c) for c in casters)}
     assert dark < tested and len(tested) < len(samples)
     for a, b in casters:
@@ -77,14 +77,14 @@ def side(p, l, x):
 
 
 def hierarchical_figure():
-    """Draws hierarchical-penumbra in a plane: light samples on a line, view samples on another, a caster between; and the product of the two sets."""
+    """Draws hierarchical-penumbra in a plane: light samples on one line, view samples on another, a caster between them; and the product of the two sets."""
     lights = [(-1.5 + 3.0 * (i + 0.5) / 16, 5.0) for i in range(16)]
     views = [(-4.0 + 8.0 * (i + 0.5) / 32, 0.0) for i in range(32)]
     caster = ((-0.4, 2.6), (2.1, 3.0))
     boxes, tested = [], set()
 
     def visit(l0, l1, v0, v1):
-        """[l0, l1) × [v0, v1): with both sets on lines the ends of a stretch are its corners."""
+        """Visits the box [l0, l1) × [v0, v1). Both sets are on lines, so the first and last of each range are the box's corners."""
         corners = [(p, l) for p in (views[v0], views[v1 - 1]) for l in (lights[l0], lights[l1 - 1])]
         signs = [[side(p, l, x) > 0 for p, l in corners] for x in caster]
         if all(signs[0]) == any(signs[0]) and all(signs[1]) == any(signs[1]):
@@ -107,7 +107,7 @@ def hierarchical_figure():
         own = {(l, v) for l in range(l0, l1) for v in range(v0, v1)}
         assert what == "leaf" or (own <= truth if what == "hidden" else not own & truth)
     assert sum((l1 - l0) * (v1 - v0) for l0, l1, v0, v1, _ in boxes) == 16 * 32
-    d = Drawing(860, 430, "Pairs of boxes that a caster is between")
+    d = Drawing(860, 430, "Pairs of boxes with a caster between them")
     d.text((20, 26), "Light samples, a caster, view samples", 14, bold=True)
     view = View(d, (10, 40, 380, 330), (-4.3, 4.3), (-0.6, 5.5))
     view.line(lights[0], lights[-1], LIGHT, 2)
@@ -120,7 +120,7 @@ def hierarchical_figure():
     l0, l1, v0, v1, _ = max((b for b in boxes if b[4] == "hidden"), key=lambda b: (b[1] - b[0]) * (b[3] - b[2]))
     view.polygon([lights[l0], lights[l1 - 1], views[v1 - 1], views[v0]], DARK, opacity=0.25)
     d.text((20, 400), "Shaded: the largest pair of boxes that it hides.", 12.5)
-    d.text((410, 26), "All pairs, and what was done with as a whole", 14, bold=True)
+    d.text((410, 26), "All pairs, and the boxes decided as a whole", 14, bold=True)
     cell, left, top = 12.6, 420, 60
     fills = {"hidden": DARK, "beside": "#fdf3d8", "leaf": "#ffffff"}
     for l0, l1, v0, v1, what in boxes:
@@ -131,9 +131,9 @@ def hierarchical_figure():
                  stroke=INK, width=0.8)
     d.text((left, top - 10), "view samples →, light samples ↓", 12.5)
     d.legend((left, top + 16 * cell + 30),
-             [("box", DARK, "hidden, as a box"), ("box", "#fdf3d8", "beside the caster, as a box"),
-              ("dot", INK, "tried one by one: hidden"), ("ring", INK, "tried one by one: not hidden")])
-    d.text((left, top + 16 * cell + 120), f"{len(tested)} of {16 * 32} pairs are tried one by one.", 12.5)
+             [("box", DARK, "hidden, as a box"), ("box", "#fdf3d8", "not hidden, as a box"),
+              ("dot", INK, "tested one by one: hidden"), ("ring", INK, "tested one by one: not hidden")])
+    d.text((left, top + 16 * cell + 120), f"{len(tested)} of {16 * 32} pairs are tested one by one.", 12.5)
     return d.finish()
 
 
@@ -148,7 +148,7 @@ def footprint_points():
 
 
 def footprint_figure():
-    """The hull of Sintorn et al. in light pixels, and the box of Eisemann and Décoret."""
+    """Draws the hull of Sintorn et al. in light pixels, and the box of Eisemann and Décoret."""
     points = footprint_points()
     outline = hull(points)
     xs, ys = [q[0] for q in points], [q[1] for q in points]
@@ -163,7 +163,7 @@ def footprint_figure():
             hit = len(clip_to(square, outline)) > 2
             touched += hit
             view.polygon(square, "#f6d9d5" if hit else None, PALE, 0.8)
-    # The hull holds everything that a point of the light and one of the triangle project.
+    # The hull contains the projections of all points of the triangle from all points of the light.
     for i in range(7):
         for j in range(7):
             l = (-1 + i / 3, -0.7 + j * 0.7 / 3)
@@ -179,7 +179,7 @@ def footprint_figure():
         view.polygon(points[k::4], None, FAINT, 1)
     for q in points:
         view.dot(q, 3.4, INK)
-    d.legend((600, 90), [("line", FAINT, "the triangle from a corner"), ("dot", INK, "its corners there: 12"),
+    d.legend((600, 90), [("line", FAINT, "shadow from a light corner"), ("dot", INK, "corners of the shadows: 12"),
                          ("line", RED, "hull: Sintorn et al."), ("box", "#f6d9d5", "light pixels that it touches"),
                          ("dash", BLUE, "box: Eisemann, Décoret")])
     d.text((600, 205), f"{touched} light pixels", 12.5)
@@ -187,7 +187,7 @@ def footprint_figure():
 
 
 def left_samples_figure():
-    """One texel of a left-sample map: a sheaf of lines."""
+    """Draws one texel of a left-sample map: a bundle of lines."""
     samples = [x for row in rows_pattern(8, 8) for x in row]
     angles, distances, radius = 24, 16, max(hypot(*x) for x in samples)
     line = (0.83, 0.35)  # angle and distance
@@ -230,16 +230,16 @@ def left_samples_figure():
     colors = {"all": GREEN, "some": "#ffffff", "none": PALE}
     for x, kind in zip(samples, kinds):
         view.dot(x, 4.4, colors[kind], stroke=INK, width=0.9)
-    d.legend((420, 100), [("line", RED, "the line that is asked for"), ("line", FAINT, "others of the same texel"),
-                          ("dot", GREEN, "left of all of them"), ("ring", INK, "left of some: decided exactly"),
-                          ("box", PALE, "left of none")])
+    d.legend((420, 100), [("line", RED, "the line that is looked up"), ("line", FAINT, "other lines of the same texel"),
+                          ("dot", GREEN, "left of all lines"), ("ring", INK, "left of some lines: decided exactly"),
+                          ("box", PALE, "left of no line")])
     d.text((420, 220), f"{kinds.count('all')} + {kinds.count('some')} of {len(samples)} light samples,", 12.5)
     d.text((420, 237), f"{angles} angles, {distances} distances", 12.5)
     return d.finish()
 
 
 def clip_line(a, b, size=1.2):
-    """The part of a segment in [−size, size]²."""
+    """Returns the part of a segment in [−size, size]²."""
     low, high = 0.0, 1.0
     for k in (0, 1):
         change = b[k] - a[k]
@@ -265,15 +265,15 @@ def soft_irregular_figure():
         return meet(l, x, (0, line), (1, line))[0]
 
     def on_light(p, x):
-        """Returns the place, −1 … 1 on the light, where p sees x."""
+        """Returns the place on the light where p sees x; the light is −1 … 1."""
         return (meet(p, x, *ends)[0] - centre[0]) / half
 
     def beyond(place):
-        """The share of the light on the other side of an edge, as the centre sees it."""
+        """Returns the share of the light beyond an edge, on the side away from the light's centre."""
         return max(0, 1 - abs(place)) / 2
 
     def visible(p, layers, some=None):
-        """1 − H − Σ k A; `some`: of these edges alone."""
+        """Returns V = 1 − H − Σ k A. `some`: the sum is over these edges only."""
         hidden = [min(on_light(p, a), on_light(p, b)) < 0 < max(on_light(p, a), on_light(p, b)) for a, b in casters]
         value = 1 - (sum(hidden) if layers else any(hidden))
         for (a, b), over in zip(casters, hidden):
@@ -281,7 +281,7 @@ def soft_irregular_figure():
             for place, x in places:
                 if some is not None and x not in some:
                     continue
-                # The caster lies toward the centre of an edge that gives light back, away from it of one that takes it.
+                # An edge gives light back if its caster lies toward the light's centre, and takes light away otherwise.
                 gives = over or (place > 0) == (place == places[1][0])
                 value += beyond(place) if gives else -beyond(place)
         return min(1, max(0, value))
@@ -315,7 +315,7 @@ def soft_irregular_figure():
                             tested.add(i)
                         if beyond(on_light(p, x)) > 0:
                             kept[i].add(x)
-    # The lists of a footprint hold all that matters.
+    # The lists under the footprints contain every view sample whose V an edge changes.
     for i, p in enumerate(samples):
         assert abs(visible(p, True) - visible(p, True, kept[i])) < 1e-12
     view.polygon([edge, (far(ends[1], edge), line), (far(ends[0], edge), line)], RED, opacity=0.16)
@@ -338,11 +338,11 @@ def soft_irregular_figure():
     view.text(ends[1], "light, and its centre", 12.5, (10, 4))
     x = 612
     d.legend((x, 90), [("dot", LIGHT, "sees the light's centre"), ("dot", DARK, "in the umbra of the centre"),
-                       ("ring", RED, "keeps the red edge"), ("box", "#f2d3cf", "its wedge, and light pixels that"), ("box", "#ffffff", "this touches")])
+                       ("ring", RED, "sees the red edge"), ("box", "#f2d3cf", "its wedge, and light pixels that"), ("box", "#ffffff", "this touches")])
     found = sum(edge in edges for edges in kept.values())
     d.text((x, 206), f"{len(tested)} of {len(samples)} view samples are", 12.5)
     d.text((x, 223), f"tested, and {found} see the red edge", 12.5)
-    d.text((x, 240), "before the light.", 12.5)
+    d.text((x, 240), "in front of the light.", 12.5)
     left, top, across, tall = 60, 470, 500, 130
     xs = [-1 + 10 * i / 400 for i in range(401)]
 

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Writes the figures of docs/ into docs/images/. Each is computed here, from a few points and the formula that its page
-explains; and into papers/ the papers' figures, from the measured numbers that are kept there. Python's standard library is all
-that it needs.
+explains. Also writes the papers' figures into papers/, from the measured numbers that are kept there. Needs only Python's
+standard library.
 
   docs/figures/make.py            writes all of them
-  docs/figures/make.py --check    exits 1 if a committed figure is not what this script draws, or if a page shows a
-                                  picture or links to a page that is not there"""
+  docs/figures/make.py --check    exits 1 if a committed figure is not what this script draws, or if a page refers to a
+                                  picture or a page that does not exist"""
 
 import re
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/shadow-map.md, pcss.md, accumulate.md: from the side, so a map is a row of texels and a caster a segment."""
+"""Figures of docs/shadow-map.md, pcss.md, accumulate.md. They are drawn from the side: a map is a row of texels, a caster a segment."""
 
 from math import floor
 
@@ -8,7 +8,7 @@ from geometry import clip, crosses
 
 
 def nearest(casters, direction):
-    """The least height below the light's centre (0, 0) at which the ray along (direction, 1) meets a caster."""
+    """Returns the least height below the light's centre (0, 0) at which the ray along (direction, 1) meets a caster."""
     heights = []
     for (x0, z0), (x1, z1) in casters:
         # (x0 + t dx) = direction (z0 + t dz)
@@ -30,8 +30,8 @@ def shadow_map_figure():
     centers = [-span + width * (i + 0.5) for i in range(texels)]
     depths = [nearest(casters, m) for m in centers]
 
-    d = Drawing(820, 440, "A shadow map from the side: texels, their depths, and what they say of the floor")
-    d.text((20, 26), "A map from the light's centre: one depth a texel, and its answers on the floor", 14, bold=True)
+    d = Drawing(820, 440, "A shadow map from the side: texels, their depths, and the shadow that they give on the floor")
+    d.text((20, 26), "A map from the light's centre: one depth per texel, and the shadow on the floor", 14, bold=True)
     view = View(d, (10, 40, 590, 390), (-3.9, 3.9), (-5.75, 0.3))
     for i in range(texels + 1):
         m = -span + width * i
@@ -69,9 +69,9 @@ def shadow_map_figure():
     view.text((-3.6, -5.0), "map", 12.5, (-4, 12), anchor="end")
     view.text((-3.6, -5.32), "true", 12.5, (-4, 12), anchor="end")
     x = 615
-    d.legend((x, 90), [("dot", BLUE, "depth of a texel: what")])
+    d.legend((x, 90), [("dot", BLUE, "depth of a texel: the first")])
     d.legend((x, 136), [("box", LIGHT, "lit"), ("box", DARK, "in shadow")])
-    d.text((x + 22, 107), "its middle sees first", 12.5)
+    d.text((x + 22, 107), "surface that its middle sees", 12.5)
     d.text((x, 220), "Edges of the shadow are", 12.5)
     d.text((x, 237), "off by up to half a texel.", 12.5)
     d.text((x, 269), "The small caster lies between", 12.5)
@@ -169,8 +169,8 @@ def accumulate_figure():
     graph.path(mean, GREEN, 2)
     worst = max(abs(a[1] - b[1]) for a, b in zip(mean[::8], truth))
     x = 610
-    d.text((x, 90), "Each light sample has a map", 12.5)
-    d.text((x, 107), "of its own, and *V*_j is 0 or 1.", 12.5)
+    d.text((x, 90), "Each light sample has a", 12.5)
+    d.text((x, 107), "separate map; *V*_j is 0 or 1.", 12.5)
     d.legend((x, 330), [("box", LIGHT, "lit"), ("box", DARK, "in shadow")])
     d.legend((x, 420), [("line", GREEN, "mean of the six"), ("line", INK, "true *V*")])
     d.text((x, 474), f"off by up to {worst:.2f}", 12.5)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/definitions.md, docs/raytrace.md: light samples and the truth of a pair. docs/view-sample.md: half-planes, bits.
-docs/depth-complexity.md: counters along segments. docs/exact.md: the sweep."""
+"""Figures of docs/definitions.md and docs/raytrace.md (light samples and the truth of a pair), docs/view-sample.md (half-planes,
+bits), docs/depth-complexity.md (counters along segments) and docs/exact.md (the sweep)."""
 
 from math import cos, hypot, pi, sin
 
@@ -17,7 +17,7 @@ def reverse_bits(x):
 
 
 def mix_bits(a, b, c):
-    """visibility/sample_patterns.cpp, hash."""
+    """The same as hash in visibility/sample_patterns.hpp."""
     x = ((a << 32 | b) + 0x9e3779b97f4a7c15 * (c + 1)) & 0xffffffffffffffff
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9 & 0xffffffffffffffff
     x = (x ^ (x >> 27)) * 0x94d049bb133111eb & 0xffffffffffffffff
@@ -49,7 +49,7 @@ def jittered(rows, columns):
 
 
 def concentric(st):
-    """Shirley and Chiu: [−1, 1]² to the unit disk, areas in proportion."""
+    """Maps [−1, 1]² to the unit disk with areas in proportion (Shirley and Chiu)."""
     a, b = st
     if a == 0 and b == 0:
         return (0, 0)
@@ -139,7 +139,7 @@ def pair_figure():
 
 
 def half_plane(a, b):
-    """f with f(l) > 0 to the left of a→b."""
+    """Returns f with f(l) > 0 to the left of a→b."""
     return lambda l: det2(sub(b, a), sub(l, a))
 
 
@@ -149,7 +149,7 @@ def view_sample_figure():
     rows, columns = 8, 8
     samples = rows_pattern(rows, columns)
     error = 0.012  # of each edge, as a distance
-    d = Drawing(860, 470, "Three half-planes leave what a triangle hides; masks are OR-ed")
+    d = Drawing(860, 470, "Three half-planes bound the part that a triangle hides; masks are OR-ed")
     d.text((20, 26), "One triangle: three half-planes, seen from *p*", 14, bold=True)
     view = View(d, (20, 40, 420, 370), (-1.08, 1.08), (-1.08, 1.08))
     view.polygon(SQUARE, "#fff7df", LIGHT, 2)
@@ -189,7 +189,7 @@ def view_sample_figure():
             view.text((ends[1], t), f"row {r}: one interval", 12, (6, 15), halo=True)
     assert opened
     d.legend((30, 432), [("dot", DARK, "hidden: all three *f* certainly of one sign")])
-    d.legend((30, 452), [("ring", RED, "open question: an *f* is within its error (drawn too wide)")])
+    d.legend((30, 452), [("ring", RED, "undecided: an *f* is within its error (drawn too wide)")])
 
     def bits(corners):
         corners = counter_clockwise(corners)
@@ -242,7 +242,7 @@ def counters_figure():
     assert start == 0
 
     def walk(x):
-        """Changes along the segment from c₀ to x, in order: (place, change)."""
+        """Returns the changes along the segment from c₀ to x, in order: (place, change)."""
         steps = []
         for q, r, k in edges:
             if crosses(c0, x, q, r):
@@ -301,7 +301,7 @@ def exact_figure():
     events = sorted(x for x in events if -1 <= x <= 1)
 
     def free(s):
-        """The uncovered intervals of the vertical line at s, and how often each interval is covered."""
+        """Returns the intervals of the vertical line at s, each with the number of layers that cover it."""
         line = []
         for q, r, k in edges:
             if (q[0] - s) * (r[0] - s) < 0:
@@ -328,7 +328,7 @@ def exact_figure():
                 view.line((middle, low), (middle, high), GREEN, 2.2)
     for q, r, k in edges:
         view.line(q, r, INK, 2)
-    # Numbers in the widest of the slabs with most layers.
+    # The numbers of layers are shown in the slab with the most layers, of those wider than 0.2.
     middle = max(((a + b) / 2 for a, b in zip(events, events[1:]) if b - a > 0.2),
                  key=lambda s: max(total for _, _, total in free(s)))
     for low, high, total in free(middle):

@@ -6,7 +6,7 @@ import zlib
 
 
 def read_png(data):
-    """Rows of bytes of an 8-bit RGB picture that is not interlaced, as penumbra writes it."""
+    """Returns the rows of bytes of an 8-bit RGB picture that is not interlaced, as penumbra writes it."""
     at, body = 8, b""
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at:at + 8])
@@ -38,12 +38,12 @@ def write_png(path, rows):
 
 
 def write_grey(rows):
-    """Rows of one byte a pixel as the bytes of a file."""
+    """Returns the bytes of a file with these rows of one byte per pixel."""
     return encoded(rows, 1)
 
 
 def write_moving(path, pictures, delay):
-    """RGB pictures of one size as an animated PNG that repeats for ever, `delay` milliseconds a picture."""
+    """Writes RGB pictures of one size as an animated PNG that repeats forever. `delay`: milliseconds per picture."""
     height, width = len(pictures[0]), len(pictures[0][0]) // 3
     out, number = header(width, height, 3) + chunk(b"acTL", struct.pack(">II", len(pictures), 0)), 0
     for k, rows in enumerate(pictures):
@@ -66,9 +66,9 @@ def encoded(rows, channels):
 
 
 def packed(rows, channels):
-    """The compressed lines of a picture."""
+    """Returns the compressed lines of a picture."""
     def filtered(line, before):
-        """Returns the line by the one of five filters whose differences are smallest in sum."""
+        """Returns the line filtered by that of the five filters whose differences have the smallest sum."""
         choices = []
         for kind in range(5):
             out = bytearray([kind])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/ranking.md: every method on every scene under three sizes of its light, ranked, with who wins where and why. Errors alone:
-what a machine does meanwhile changes none of them.
+"""Makes docs/ranking.md: every method on every scene under three sizes of its light, ranked, with the winner of each cell and the
+reason. Only errors are ranked, not times, so that the load of the machine changes nothing.
 
-  docs/figures/ranking.py measure [PROGRAM] [SCENE…]      measures what a cell lacks (a minute a cell on two busy cores), kept in ranking.json
+  docs/figures/ranking.py measure [PROGRAM] [SCENE…]      measures the numbers missing in ranking.json (a minute per cell on two busy cores)
 
 docs/figures/make.py writes the page from the kept numbers."""
 
@@ -24,7 +24,7 @@ SCENES = ["bunny", "contact", "fusion", "large-penumbra", "self-shadow", "thin",
     f"papers/{name}" for name in ("ball", "bars", "fusion-half", "gap-open", "plate-over-plate", "slopes", "tower", "two-sheets")]
 SIZES = [("small", 0.25), ("as shipped", 1.0), ("large", 2.0)]
 PICTURE, TEXELS, SAMPLES = 72, 128, 64
-# Variants that papers compare, beside each method as it is by default.
+# Variants that papers compare, in addition to each method with its default options.
 VARIANTS = ["vssm:moments=lvsm", "vssm:moments=evsm", "vssm:moments=csm", "vssm:moments=esm", "backproject:layers=4", "bitmask:layers=4",
             "soft-volume:fusion=max", "soft-volume:fusion=product", "soft-volume:fusion=average", "soft-volume:fusion=vote"]
 CLASSES = ["lit", "penumbra", "umbra", "cast", "self"]
@@ -32,7 +32,7 @@ NUMBERS = ["rmse", "bias", "over255", "banding", "flip", *CLASSES]
 
 
 def scaled(light, factor):
-    """The light about its middle."""
+    """Returns the light scaled about its middle."""
     light = json.loads(json.dumps(light))
     for shape in ("rectangle", "ellipse"):
         for side in ("halfU", "halfV"):
@@ -51,7 +51,7 @@ def short(number):
 
 
 def entries(program):
-    """Every method of planar lights but the two judges, and the variants; with maps of TEXELS a side."""
+    """Returns all methods for planar lights except references, and the variants; maps have TEXELS per side."""
     table = json.loads(subprocess.run([program, "methods", "--json"], check=True, capture_output=True, text=True).stdout)
     table = table["methods"] if isinstance(table, dict) else table
     found = {}
@@ -65,7 +65,7 @@ def entries(program):
 
 
 def cell(program, folder, world, methods):
-    """{"pixels": {class: n}, "methods": {entry: numbers}}; entries that cannot do the light are left out."""
+    """Returns {"pixels": {class: n}, "methods": {entry: numbers}}, without entries that do not support the light."""
     path, out = folder / "scene.json", folder / "out"
     path.write_text(json.dumps(world), encoding="utf-8")
     refused = {}
@@ -118,7 +118,7 @@ def measure(program, names):
 
 
 def written(kept):
-    """Returns JSON, a line an entry."""
+    """Returns JSON with one line for each entry."""
     lines = []
     for name, found in kept["cells"].items():
         rows = ",\n".join(f"   {json.dumps(entry)}: {json.dumps(numbers)}" for entry, numbers in found["methods"].items())
@@ -128,7 +128,7 @@ def written(kept):
 
 
 def rows_of(kept):
-    """{cell: {entry: {number: value}}}, without entries of no number."""
+    """Returns {cell: {entry: {number: value}}}, without entries that have no numbers."""
     return {name: {entry: dict(zip(NUMBERS, numbers)) for entry, numbers in found["methods"].items() if numbers[0] is not None}
             for name, found in kept["cells"].items()}
 
@@ -138,7 +138,8 @@ def squares(numbers, pixels, name):
 
 
 def reason(cell, pixels, winner, rivals):
-    """Returns where the winner is better than the next five: the class that their mean squared error loses most in, and its share."""
+    """Returns where the winner is better than the next five: the class in which their mean squared error exceeds the winner's most,
+    and this class's share of all such differences."""
     gains = {name: sum(squares(cell[r], pixels, name) for r in rivals) / len(rivals) - squares(cell[winner], pixels, name)
              for name in ("lit", "penumbra", "umbra")}
     whole = sum(max(gain, 0) for gain in gains.values())
@@ -160,12 +161,12 @@ def number(x):
 
 
 def best(cell, families, family, exact):
-    """Entries of a family, the least RMSE first; without those that decide or integrate exactly."""
+    """Returns the entries of a family, the least RMSE first, without those in `exact`."""
     return sorted((entry for entry in cell if families[entry] == family and entry not in exact), key=lambda e: (cell[e]["rmse"], e))
 
 
 def ranked(cells, entries, key):
-    """{entry: mean place among entries that did the cell}, places of equal numbers shared."""
+    """Returns {entry: mean rank over all cells}, each rank among the entries with a number there; equal numbers share their ranks."""
     places = {entry: [] for entry in entries}
     for cell in cells.values():
         found = sorted((cell[e][key], e) for e in entries if e in cell and cell[e][key] is not None)
@@ -177,7 +178,7 @@ def ranked(cells, entries, key):
 
 
 def agreement(a, b):
-    """Spearman's rank correlation of two {entry: number}."""
+    """Returns Spearman's rank correlation of two {entry: number}."""
     names = sorted(set(a) & set(b))
     rank = lambda of: {n: i for i, n in enumerate(sorted(names, key=lambda n: (of[n], n)))}  # noqa: E731
     ra, rb = rank(a), rank(b)
@@ -186,7 +187,7 @@ def agreement(a, b):
 
 
 def tied(cell, order):
-    """The first, and those whose number is the same at the digits shown."""
+    """Returns the first entry, and those whose RMSE is the same in the displayed digits."""
     same = [entry for entry in order if number(cell[entry]["rmse"]) == number(cell[order[0]]["rmse"])]
     return ", ".join(f"`{entry}`" for entry in same[:3]) + (f" and {len(same) - 3} more" if len(same) > 3 else "")
 
@@ -198,7 +199,7 @@ def linked(entry):
 def page(kept):
     families, cells = kept["families"], rows_of(kept)
     pixels = {name: found["pixels"] for name, found in kept["cells"].items()}
-    # Methods that answer every pair, or the area, exactly: the same error everywhere, of the light samples or of none.
+    # Methods that decide every pair, or compute the area, exactly: in every cell they have only the error of the light samples, or none.
     exact = {e for e in families if families[e] == "geometry" and
              all(e not in cell or cell[e]["rmse"] <= 1.1 * cell["edge-scatter"]["rmse"] + 1e-4 for cell in cells.values())}
     images = [e for e in families if families[e] == "image"]
@@ -279,7 +280,7 @@ sample rightly, or so nearly that only the sampling error of their {SAMPLES} lig
 
 
 def stale(check):
-    """Writes the page; with `check`, says whether the committed one differs."""
+    """Writes the page; with `check`, returns a complaint if the committed page differs."""
     text = page(json.loads(KEPT.read_text(encoding="utf-8")))
     if not check:
         PAGE.write_text(text, encoding="utf-8")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""ARCHITECTURE.md: which room includes which, from the includes themselves. The rooms are those of tests/layering.cmake,
-which fails on an include that is not allowed; this only draws what is there."""
+"""Figure of ARCHITECTURE.md: which room (folder of code) includes which, from the files' #include lines. The rooms are those of
+tests/layering.cmake, a test that fails on an include that is not allowed; this script only draws the existing ones."""
 
 import re
 from pathlib import Path
@@ -26,7 +26,7 @@ def room_of(folder, rooms):
 
 
 def included(rooms):
-    """{room: rooms whose headers its files include}"""
+    """Returns {room: rooms whose headers its files include}."""
     arrows = {room: set() for room in rooms}
     for top in sorted({room.partition("/")[0] for room in rooms}):
         for path in sorted((ROOT / top).rglob("*")):
@@ -41,7 +41,7 @@ def included(rooms):
 
 
 def reach(arrows):
-    """{room: all rooms that arrows lead to}; the arrows form no circle, as layering.cmake sees to."""
+    """Returns {room: all rooms that arrows lead to}. The arrows form no cycle, as layering.cmake ensures."""
     known = {}
 
     def of(room):
@@ -58,19 +58,19 @@ def rooms_figure():
     rooms = rooms_of_layering()
     arrows = included(rooms)
     reached = reach(arrows)
-    # An arrow that other arrows imply is not drawn.
+    # An arrow is not drawn if other arrows imply it.
     drawn = {room: {other for other in arrows[room] if not any(other in reached[third] for third in arrows[room])}
              for room in rooms}
     level = {}
     for room in sorted(rooms, key=lambda r: len(reached[r])):
         level[room] = 1 + max((level[other] for other in reached[room]), default=-1)
     height = max(level.values()) + 1
-    # A room that nothing but high rooms include is drawn beside them rather than at the bottom.
+    # A room that only high rooms include is drawn one row below them rather than at the bottom.
     users = {room: [other for other in rooms if room in drawn[other]] for room in rooms}
     for room in sorted(rooms, key=lambda r: -level[r]):
         if users[room]:
             level[room] = min(level[other] for other in users[room]) - 1
-    # A row with more boxes than fit sends those that nothing keeps there one lower, and so on down.
+    # If a row has more boxes than fit, boxes that may be lower move one row down; then the same for the rows below.
     width, step, margin = 1160, 62, 16
     box = {room: 7.6 * len(room) + 18 for room in rooms}
 
@@ -84,7 +84,7 @@ def rooms_figure():
             if not free or sum(box[room] + 40 for room in row) < width - 2 * margin:
                 break
             level[min(free, key=lambda room: (lowest(room), room))] -= 1
-    # An arrow over several rows passes each row between at a place of its own, so that none runs behind a box.
+    # An arrow over several rows has a separate place in each row in between, so that no arrow runs behind a box.
     chains = []
     for room in rooms:
         for other in sorted(drawn[room]):
@@ -95,7 +95,7 @@ def rooms_figure():
     above = {node: [chain[i - 1] for chain in chains for i in range(1, len(chain)) if chain[i] == node] for node in nodes}
     below = {node: [chain[i + 1] for chain in chains for i in range(len(chain) - 1) if chain[i] == node] for node in nodes}
 
-    # Left to right: each row by the mean place of what is above, then of what is below, a few times over.
+    # Order from left to right: sort each row by the mean place of its neighbours above, then below; repeat a few times.
     span = {node: box.get(node, 14) for node in nodes}
     rows = [[node for node in nodes if level[node] == n] for n in range(height)]
     place = {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/edge-scatter.md: changes and running sums; block, shaft and cone; open light samples."""
+"""Figures of docs/edge-scatter.md: changes and running sums; block, shaft and cone; open light samples."""
 
 from math import atan2, ceil, cos, degrees, hypot, pi, sin
 
@@ -12,7 +12,7 @@ LAMP = Light((0, 0, 6), (-2, 0, 0), (0, 1.2, 0))  # as seen from P, u runs to th
 
 
 def seen_at(s, t, share):
-    """The point on the segment from P to the light point (s, t)."""
+    """Returns the point on the segment from P to the light point (s, t)."""
     return mix(P, LAMP.point((s, t)), share)
 
 
@@ -131,7 +131,7 @@ def rows_figure():
 
 
 def shaft_figure():
-    """Draws from the side two clusters of one pixel block, the shaft of one, boxes and cones of edges beside and in it."""
+    """Draws, from the side, two clusters of one pixel block, the shaft of one of them, and boxes and cones of edges inside and outside this shaft."""
     light = [(2.6, 6.0), (4.4, 6.0)]
     table = [(1.62 + 0.16 * i, 1.55) for i in range(4)]
     floor = [(2.3 + 0.38 * i, 0.0) for i in range(4)]
@@ -155,11 +155,11 @@ def shaft_figure():
     view.text((3.05, 1.6), "shaft", 12.5, (0, 0), fill=GREEN, anchor="middle")
 
     def surface(center, radius, start, end, steps=6):
-        """A bent sheet's facets from the side: their ends."""
+        """Returns the ends of a bent sheet's facets, seen from the side."""
         return arc(center, radius, start, end, steps)
 
     def judge(points):
-        """Returns the box, and whether it is outside the shaft, all seen from one side, or needed."""
+        """Returns the box around a sheet, and whether it is outside the shaft, seen from one side only, or may have silhouettes."""
         x0, x1 = min(x for x, _ in points), max(x for x, _ in points)
         y0, y1 = min(y for _, y in points), max(y for _, y in points)
         corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
@@ -224,7 +224,7 @@ def shaft_figure():
 
 
 def open_figure():
-    """A crossing and a vertex with their errors, drawn many thousand times too large."""
+    """Draws a crossing and a vertex with their errors, many thousand times too large."""
     rows, columns = 4, 8
     samples = rows_pattern(rows, columns)
     spacing = (2 / columns, 2 / rows)
@@ -232,7 +232,7 @@ def open_figure():
     error = 0.036  # of every vertex, in s and in t
 
     d = Drawing(760, 380, "Open light samples around a crossing and around a vertex")
-    d.text((20, 26), "What rounding may have moved across a light sample is *open*", 14, bold=True)
+    d.text((20, 26), "A light sample is *open* if rounding may have moved an edge across it", 14, bold=True)
     view = View(d, (20, 42, 480, 316), (-1.02, 1.02), (-1.02, 1.02), stretch=True)
     view.polygon(SQUARE, "#fffdf5", LIGHT, 2)
     opened = set()
@@ -277,7 +277,7 @@ def open_figure():
 
 
 def scattered_samples(count):
-    """Points of the unit disk (Kronecker's sequence of the golden ratio and its square, area-preserving)."""
+    """Returns points of the unit disk, evenly spread by area: their angles are a Kronecker sequence of the golden ratio."""
     golden = 0.6180339887498949
     points = []
     for i in range(count):
@@ -287,7 +287,8 @@ def scattered_samples(count):
 
 
 def change_in_tiles(edge, q, corner, left=-1.0):
-    """Returns what an edge changes along a path to q: up the left side, along the path of its row to its tile's left side, up, and right."""
+    """Returns the change of depth by an edge along a path to q: up the light's left side, along the path of q's row to the left side of q's
+    tile, then up, and right."""
     (x0, y0), (x1, y1), jump = edge
 
     def passed(at, side):
@@ -298,7 +299,7 @@ def change_in_tiles(edge, q, corner, left=-1.0):
 
 
 def tiles_figure():
-    """Light samples of a disk in rows of tiles, and what one edge changes there."""
+    """Draws light samples of a disk in rows of tiles, and the changes by one edge there."""
     tile, rows, count = 16, 4, 256
     by_height = sorted(scattered_samples(count), key=lambda q: (q[1], q[0]))
     of_row = count // rows
@@ -349,24 +350,24 @@ def tiles_figure():
     d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "changes by its multiplicity"), ("dot", LIGHT, "does not change"),
                          ("box", "#d3e6d4", f"{tested} tiles are tested, sample by sample"),
                          ("box", "#f4d6d2", f"{whole} tiles change as a whole: one number each"),
-                         ("line", BLUE, "the path to a light sample of a tested tile"), ("line", DARK, "and of one that changes as a whole")],
+                         ("line", BLUE, "the path to a light sample of a tested tile"), ("line", DARK, "the same for a tile that changes as a whole")],
              step=24)
     d.text((410, 274), "A row's path goes along its lowest light sample, and", 12.5)
-    d.text((410, 291), "from there up and to the right within a tile. So what", 12.5)
-    d.text((410, 308), "an edge changes in a tile that it does not pass is", 12.5)
-    d.text((410, 325), "the same for all of its light samples, whether or not", 12.5)
-    d.text((410, 342), "they are at its height: the edges that go on from its", 12.5)
-    d.text((410, 359), "ends see to the rest.", 12.5)
+    d.text((410, 291), "from there up and to the right within a tile. So an", 12.5)
+    d.text((410, 308), "edge changes all light samples of a tile that it does", 12.5)
+    d.text((410, 325), "not pass by the same number, whether or not they are", 12.5)
+    d.text((410, 342), "at its height: the edges that continue at its ends", 12.5)
+    d.text((410, 359), "account for the rest.", 12.5)
     return d.finish()
 
 
 def upward(a, b, k):
-    """(low end, high end, change of depth to the right) of an edge from a to b with multiplicity k."""
+    """Returns (low end, high end, change of depth to the right) of an edge from a to b with multiplicity k."""
     return (a, b, -k) if a[1] < b[1] else (b, a, k)
 
 
 def change_along_the_path(edge, q, middle, left=-1.0):
-    """Returns what an edge changes along a path to q: up the left side, along the row's middle, and then straight to q."""
+    """Returns the change of depth by an edge along a path to q: up the light's left side, along the row's middle, and then straight to q."""
     (x0, y0), (x1, y1), jump = edge
     spans, over = y0 <= middle < y1, x1 - x0
 
@@ -381,7 +382,7 @@ def change_along_the_path(edge, q, middle, left=-1.0):
 
 
 def points_figure():
-    """Light samples of a disk in rows of equal height, and the paths to two of them past an edge."""
+    """Draws light samples of a disk in rows of equal height, and the paths to two of them past an edge."""
     rows, count = 9, 84
     samples = scattered_samples(count)
     corners = [(0.42, -0.36), (0.74, 0.88), (-0.62, 0.13)]
@@ -414,8 +415,8 @@ def points_figure():
     for q in samples:
         view.dot(q, 3.2, RED if q in changed else LIGHT if q in in_row else PALE, stroke=INK, width=0.5)
     view.line(low, high, INK, 2.2)
-    d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "of this row: changes"), ("dot", LIGHT, "of this row: does not change"),
-                         ("line", BLUE, "the path to a light sample between its ends"), ("line", DARK, "and to one right of it")], step=24)
+    d.legend((410, 84), [("line", INK, "an edge"), ("dot", RED, "in this row: changes"), ("dot", LIGHT, "in this row: does not change"),
+                         ("line", BLUE, "the path to a light sample between its ends"), ("line", DARK, "the path to one to the right of it")], step=24)
     d.text((410, 226), "All light samples of a row that are right of the edge's", 12.5)
     d.text((410, 243), "right end change alike: by its multiplicity if it crosses", 12.5)
     d.text((410, 260), "the row's middle, else not at all. Only those between its", 12.5)

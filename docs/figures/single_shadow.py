@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/penumbra-map.md, smoothies.md, brabec-seidel.md, kirsch-doellner.md, parker.md, arvo.md, layer-rays.md."""
+"""Figures of docs/penumbra-map.md, smoothies.md, brabec-seidel.md, kirsch-doellner.md, parker.md, arvo.md, layer-rays.md."""
 
 from math import pi, sqrt
 
@@ -22,7 +22,7 @@ def cubic(t):
 
 
 def exact(x):
-    """V of the floor at x under a half plane that lies at x > 0."""
+    """Returns V of the floor at x below a half plane at x > 0."""
     return clamped(0.5 - x / (2 * TRUE))
 
 
@@ -38,20 +38,20 @@ def outside(x):
 
 
 CURVES = {
-    "penumbra-map": (cone, "Cones and sheets open downward from the silhouette; a texel's depth in them says how light it is",
-                     "outer half alone; darker than it should be near the hard shadow"),
-    "smoothies": (outside, "Strips beside the silhouette, as wide everywhere as the light's centre sees them",
-                  "outer half alone; right in width at one height of the silhouette"),
+    "penumbra-map": (cone, "Cones and sheets open downward from the silhouette; a texel's depth in them gives *V*",
+                     "outer half only; too dark near the hard shadow"),
+    "smoothies": (outside, "Strips outside the silhouette, equally wide as seen from the light's centre",
+                  "outer half only; the width is right for one height of the silhouette"),
     "parker": (outside, "Objects have soft edges: how closely does the ray to the light's centre pass?", "outer half alone"),
     "kirsch-doellner": (lambda x: clamped(1 - x / REACH) if x > 0 else 1.0, "How far inside the hard shadow is the receiver?", "inner half alone"),
-    "brabec-seidel": (lambda x: clamped(0.5 - x / (2 * REACH)), "The nearest texel that would shade, or that would not, says where the border is", "both halves"),
+    "brabec-seidel": (lambda x: clamped(0.5 - x / (2 * REACH)), "The nearest texel that would shade, or would not, gives the place of the border", "both halves"),
     "arvo": (lambda x: cubic(0.5 - x / (2 * REACH)), "The hard shadow's border grows over the picture, a pixel at a time, in and out", "both halves"),
 }
 
 
 def profile_figure(method):
     v, title, half = CURVES[method]
-    d = Drawing(860, 440, f"{method} beside an edge: a half plane under a light, and V along the floor",
+    d = Drawing(860, 440, f"{method} at an edge: a half plane under a light, and V along the floor",
                 f"A half plane between a light and a floor. True V falls linearly over both sides of the hard shadow's border. {method}: {half}.")
     d.text((20, 26), title, 14, bold=True)
     view = View(d, (20, 45, 560, 220), (-1.6, 1.6), (-5.2, 0.3), stretch=True)
@@ -86,7 +86,7 @@ def profile_figure(method):
     assert (dark > 0.5 * TRUE) == (method in ("penumbra-map", "smoothies", "parker"))
     d.text((20, 296), "*V* along the floor", 12.5, DARK)
     d.legend((605, 90), [("line", LIGHT, "the light"), ("line", DARK, "a half plane; the floor"), ("line", INK, "border of the hard shadow"),
-                         ("dash", FAINT, "the penumbra, really"), ("box", "#b9d7ba", "what the method has of it")])
+                         ("dash", FAINT, "the true penumbra"), ("box", "#b9d7ba", "the penumbra by the method")])
     d.legend((605, 330), [("line", INK, "true *V*"), ("line", RED, method)])
     d.text((605, 380), half.partition(";")[0], 13, bold=True)
     d.text((605, 402), f"RMSE over the penumbra: {off:.2f}", 12.5)
@@ -97,7 +97,7 @@ def layer_rays_figure():
     d = Drawing(860, 430, "A ray through layers of a map, texel by texel",
                 "Columns are texels of the map as the light's centre sees them. Two layers of depths; a wall joins neighbours that are near each other; a ray from p to a "
                 "light sample passes each texel between two depths and is stopped by a piece or a wall.")
-    d.text((20, 26), "Each texel is passed between two depths: what lies between stops the ray", 14, bold=True)
+    d.text((20, 26), "Each texel is passed between two depths: a surface in between stops the ray", 14, bold=True)
     view = View(d, (20, 50, 560, 350), (-0.6, 0.6), (-5.4, 0.2), stretch=True)
     step = 0.1
     texels = [-0.5 + step * k for k in range(10)]  # left borders, as (x/z)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/backproject.md, backproject-peel.md, bitmask.md, soft-shadow-map.md, contour.md, packet.md: texels of one map as occluders.
-From the side a map is a row of texels, a caster a segment, and the light a line at height 0; heights grow downward."""
+"""Figures of docs/backproject.md, backproject-peel.md, bitmask.md, soft-shadow-map.md, contour.md, packet.md: texels of one map as
+occluders. As seen from the side, a map is a row of texels, a caster a segment, and the light a line at height 0; heights grow downward."""
 
 from math import atan2, hypot, pi
 
@@ -24,14 +24,14 @@ def heights(casters, direction):
 
 
 def map_of(casters, span, texels):
-    """[(left, right, heights)] of the texels that hold something."""
+    """Returns [(left, right, heights)] of the texels that are not empty."""
     width = 2 * span / texels
     rows = [(-span + i * width, -span + (i + 1) * width) for i in range(texels)]
     return [(a, b, heights(casters, (a + b) / 2)) for a, b in rows if heights(casters, (a + b) / 2)]
 
 
 def on_light(p, a, b, z, half):
-    """The part of the light that a texel [a, b] at height z hides from p, as (from, to)."""
+    """Returns the part of the light that a texel [a, b] at height z hides from p, as (from, to)."""
     x, depth = p
     f = z * depth / (depth - z)
     return max((a - x / depth) * f, -half), min((b - x / depth) * f, half)
@@ -50,7 +50,7 @@ def union(parts):
 
 
 def scene_view(d, box, casters, patches, p, half, left=-2.6, right=2.6):
-    """Light, casters, floor, patches of texels, and the rays from p past them."""
+    """Draws the light, casters, the floor, patches of texels, and the rays from p past them."""
     view = View(d, box, (left, right), (-FLOOR - 0.35, 0.35), stretch=True)
     view.line((left, -FLOOR), (right, -FLOOR), DARK, 2)
     for (x0, z0), (x1, z1) in casters:
@@ -72,7 +72,7 @@ def scene_view(d, box, casters, patches, p, half, left=-2.6, right=2.6):
 
 
 def light_bar(d, at, width, half, parts, label):
-    """The light, large: what each part hides, darker where two do."""
+    """Draws the light enlarged, with its hidden parts; where two overlap, it is darker."""
     x, y = at
     view = View(d, (x, y, width, 22), (-half, half), (0, 1), stretch=True)
     view.polygon([(-half, 0), (half, 0), (half, 1), (-half, 1)], LIGHT)
@@ -89,7 +89,7 @@ HALF, SPAN, TEXELS = 0.6, 0.72, 18
 
 
 def backproject_figure():
-    d = Drawing(860, 470, "Texels as patches, seen from a receiver: what they hide of the light, with gaps and with gaps filled",
+    d = Drawing(860, 470, "Texels as patches, seen from a receiver: the hidden parts of the light, with gaps and with gaps filled",
                 "A small plate above a large one. Patches of the large plate end where the small one hides it from the light's centre; "
                 "from p light shows through the gap, until patches reach to the height of their neighbours.")
     texels = [(a, b, z[0]) for a, b, z in map_of(PLATES, SPAN, TEXELS)]
@@ -98,7 +98,7 @@ def backproject_figure():
     plain = [on_light(P, a, b, z, HALF) for a, b, z in texels]
     filled = []
     for i, (a, b, z) in enumerate(texels):
-        # Extended only (Guennebaud et al. 2006): the left border where the left neighbour's depth sees it, if farther out.
+        # A patch can only grow (Guennebaud et al. 2006): its left border, projected at the left neighbour's depth, counts if farther out.
         first, last = on_light(P, a, b, z, HALF)
         if i:
             own = (a - P[0] / P[1]) * z * P[1] / (P[1] - z)
@@ -114,8 +114,8 @@ def backproject_figure():
     assert real == 0
     d.legend((x, 285), [("line", BLUE, "patches of the small plate"), ("line", GREEN, "patches of the large plate"), ("box", FAINT, "the plates themselves"),
                         ("box", DARK, "hidden part of the light")])
-    d.text((20, 380), "The large plate is not in the map where the small one stands before it as the light's centre sees them. From p the two", 12.5)
-    d.text((20, 397), "are apart, and light comes through the gap. Filling takes it for one surface's: right here, too dark where the gap is real.", 12.5)
+    d.text((20, 380), "The map lacks the part of the large plate that the small one hides from the light's centre. As seen from p the plates", 12.5)
+    d.text((20, 397), "are apart, and light comes through the gap. Filling assumes one surface: right here, too dark where the gap is real.", 12.5)
     d.text((20, 425), f"A border at tangent *α* and height *z*_s falls at (*α* − *x*/*z*) · *f* on the light, *f* = *z*_s *z* / (*z* − *z*_s); map of {TEXELS} texels.", 12.5)
     return d.finish()
 
@@ -130,7 +130,7 @@ def peel_figure():
         z, part = next(((z, part) for z, part in parts if part[0] < part[1]), parts[0])
         chosen.append(part)
         patches += [(a, b, layer, GREEN if layer == z else BLUE) for layer in layers]
-    d.text((20, 26), "Peeled layers: of a texel's surfaces the deepest that hides light from p counts", 14, bold=True)
+    d.text((20, 26), "Peeled layers: the deepest surface of a texel that hides light from p counts", 14, bold=True)
     scene_view(d, (20, 45, 520, 300), PLATES, patches, P, HALF)
     hidden = min(1.0, sum(max(0.0, b - a) for a, b in chosen) / (2 * HALF))
     light_bar(d, (565, 110), 270, HALF, chosen, f"two layers: *V* = {1 - hidden:.2f}")
@@ -138,7 +138,7 @@ def peel_figure():
     assert abs(1 - hidden - truth(PLATES, P, HALF)) < 1e-9
     d.legend((565, 205), [("line", GREEN, "counts"), ("line", BLUE, "does not: something behind it does"), ("box", DARK, "hidden part of the light")])
     middles = sum(len(layers) > 1 for *_, layers in rows)
-    d.text((20, 380), f"{middles} of {len(rows)} texels have a second layer. Whether p is behind a layer is asked at the middle between it and the next, so that", 12.5)
+    d.text((20, 380), f"{middles} of {len(rows)} texels have a second layer. Whether p is behind a layer is decided at the middle between it and the next, so that", 12.5)
     d.text((20, 397), "a closed surface does not shade itself and needs no bias.", 12.5)
     return d.finish()
 
@@ -146,10 +146,10 @@ def peel_figure():
 def bitmask_figure():
     casters = [((-1.5, 1.6), (0.0, 1.6)), ((0.28, 3.4), (0.7, 3.4))]
     p, half, count = (1.0, FLOOR), 1.0, 32
-    d = Drawing(860, 440, "Parts of the light as sets of light samples: what two patches hide counts once",
+    d = Drawing(860, 440, "Parts of the light as sets of light samples: light that two patches hide counts once",
                 "Two plates overlap as p sees them. Summed parts hide more than the light has; joined sets of 32 light samples do not.")
     texels = [(a, b, z[0]) for a, b, z in map_of(casters, 0.95, 38)]
-    d.text((20, 26), "What texels hide, as bits of light samples: joined, not added", 14, bold=True)
+    d.text((20, 26), "Hidden light as bits of light samples: joined, not added", 14, bold=True)
     scene_view(d, (20, 45, 500, 290), casters, [(a, b, z, BLUE if z < 2 else GREEN) for a, b, z in texels], p, half)
     parts = [on_light(p, a, b, z, half) for a, b, z in texels]
     parts = [part for part in parts if part[0] < part[1]]
@@ -168,8 +168,8 @@ def bitmask_figure():
     real = truth(casters, p, half)
     d.text((x, 305), f"true *V* = {real:.2f}", 13, bold=True)
     assert abs(1 - len(joined) / count - real) < 0.06 and 1 - total < real - 0.2
-    d.text((20, 375), "As the light's centre sees them the plates are apart, so both are in the map; as p sees them one is behind the other. Sums take", 12.5)
-    d.text((20, 392), "the overlap off twice. Bits are the light samples that all methods share, so that they compare with rays pair by pair, and", 12.5)
+    d.text((20, 375), "From the light's centre the plates are apart, so both are in the map; from p one is behind the other. Sums subtract", 12.5)
+    d.text((20, 392), "the overlap twice. Bits are the light samples that all methods share, so masks can be compared with rays pair by pair, and", 12.5)
     d.text((20, 409), "each sample has its own colour and cosine.", 12.5)
     return d.finish()
 
@@ -188,7 +188,7 @@ def soft_shadow_map_figure():
                 "One patch and the wedge of directions in which it hides some of the light; below it the hidden share that it adds on the floor, the sums "
                 "of all patches, and the truth.")
     texels = [(a, b, z[0]) for a, b, z in map_of(casters, 0.42, count)]
-    d.text((20, 26), "Each patch of the occluders adds what it hides to every receiver it can reach", 14, bold=True)
+    d.text((20, 26), "Each occluder patch adds its hidden light to every receiver that it can reach", 14, bold=True)
     view = View(d, (20, 45, 540, 250), (-3.1, 3.1), (-5.2, 0.3), stretch=True)
     view.line((-3.1, -FLOOR), (3.1, -FLOOR), DARK, 2)
     for (x0, z0), (x1, z1) in casters:
@@ -222,19 +222,19 @@ def soft_shadow_map_figure():
     d.legend((x, 90), [("line", FAINT, "casters"), ("line", BLUE, "patches of the occluder map"), ("line", GREEN, "one patch, and what it reaches")])
     d.legend((x, 340), [("line", GREEN, "hidden by that patch alone"), ("line", BLUE, "*V*: 1 − the sum of all"), ("line", INK, "true *V*")])
     d.text((x, 410), f"off by up to {worst:.2f}", 12.5)
-    d.text((20, 465), "What is on the light is computed at texels of a second map, of the receivers, and pixels look *V* up there.", 12.5)
+    d.text((20, 465), "Hidden light is computed at the texels of a second map, of the receivers, in which pixels look up *V*.", 12.5)
     d.text((20, 484), f"A patch reaches (half the light) · (1/*z*_p − 1/*z*) beyond its own directions; {count} texels across.", 12.5)
     return d.finish()
 
 
 def blob(i, j):
-    """A shape on the map's texels that is neither convex nor aligned."""
+    """Returns whether a texel is in a shape that is neither convex nor aligned with the map's axes."""
     x, y = i - 6.7, j - 6.2
     return hypot(x, 1.25 * y) < 4.6 + 1.5 * (x * y > 0) * min(1, abs(x * y) / 9) or (5 <= i - 2 <= 9 and 9 <= j <= 11)
 
 
 def outline_edges(inside, size):
-    """Marching squares between texels' centres: each edge with the inside at its left, saddles cut apart."""
+    """Returns the edges of marching squares between texels' centres: each has the inside on its left, and saddles are separated."""
     edges = []
     for j in range(-1, size):
         for i in range(-1, size):
@@ -255,7 +255,7 @@ def contour_figure():
     d = Drawing(860, 430, "An outline of the texels that shade, and the parts of the light beyond its edges",
                 "Left a map with shading texels and their outline through the middles between centres; right the outline on the light, "
                 "with the sector beyond one edge.")
-    d.text((20, 26), "Only the outline of what shades is projected", 14, bold=True)
+    d.text((20, 26), "Only the outline of the shading texels is projected", 14, bold=True)
     view = View(d, (20, 45, 360, 340), (-0.6, size - 0.4), (-0.6, size - 0.4))
     for i in range(size):
         for j in range(size):
@@ -316,10 +316,10 @@ def packet_figure():
                         walk(x + dx, y + dy, side // 2)
 
     walk(left, bottom, 2 ** level)
-    d = Drawing(860, 430, "Nine pixels share a kernel, and a pyramid leaves out what is all lit or all in shadow",
+    d = Drawing(860, 430, "Nine pixels share a kernel, and a pyramid skips nodes that are fully lit or fully in shadow",
                 "A map with a round caster. Nine kernels lie within one; below the node over it, empty and full nodes are not opened, and the outline is found "
                 "in the cells that remain.")
-    d.text((20, 26), "3 × 3 pixels look once, and only where the outline can be", 14, bold=True)
+    d.text((20, 26), "3 × 3 pixels search once, and only where the outline can be", 14, bold=True)
     view = View(d, (20, 45, 360, 340), (3.5, 29.5), (4.5, 30.5))
     for i, j in held:
         view.polygon([(i - 0.5, j - 0.5), (i + 0.5, j - 0.5), (i + 0.5, j + 0.5), (i - 0.5, j + 0.5)], "#c3cad3")
@@ -333,7 +333,7 @@ def packet_figure():
         second.polygon([(x, y), (x1, y), (x1, y1), (x, y1)], colour, INK, 0.6)
     for x, y in leaves:
         second.polygon([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], RED, INK, 0.6)
-    d.text((20, 400), f"kernels of nine pixels, and theirs together: {cells} × {cells} cells", 12.5)
+    d.text((20, 400), f"kernels of nine pixels, and their common kernel: {cells} × {cells} cells", 12.5)
     d.text((440, 400), f"{len(visited)} nodes and {len(leaves)} cells of {cells * cells}", 12.5)
     d.legend((440, 424), [("box", "#8d99a6", "all in shadow")])
     d.legend((560, 424), [("box", "#f6e3b4", "all lit")])

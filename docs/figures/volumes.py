@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""docs/hard-volume.md, soft-volume.md, soft-volume-blend.md, wedge-ramp.md, plateaus.md, signed-crossings.md."""
+"""Figures of docs/hard-volume.md, soft-volume.md, soft-volume-blend.md, wedge-ramp.md, plateaus.md, signed-crossings.md."""
 
 from math import hypot
 
@@ -80,7 +80,7 @@ def hard_volume_figure():
 
 
 def beyond(c, q0, q1):
-    """The light points l for which the segment c→l crosses the edge q0 q1."""
+    """Returns the region of light points l for which the segment c→l crosses the edge q0 q1."""
     if det2(sub(q0, c), sub(q1, c)) < 0:
         q0, q1 = q1, q0
     region = SQUARE
@@ -113,7 +113,7 @@ def soft_volume_figure():
             a, b = edges[i]
             region = beyond(c, a, b)
             share = abs(area(region)) / 4
-            # An edge that runs clockwise around C is crossed from outside the board: it takes light away.
+            # Seen from c, an edge that runs clockwise is crossed from outside the board: it takes light away.
             takes = det2(sub(a, c), sub(b, c)) < 0
             view.polygon(region, RED if takes else BLUE, opacity=0.22)
             view.line(a, b, RED if takes else BLUE, 3)
@@ -154,7 +154,7 @@ def blend_figure():
     def box_area(b):
         return max(0, b[2] - b[0]) * max(0, b[3] - b[1])
 
-    d = Drawing(800, 430, "Boxes around what two occluders hide in each quarter of the light")
+    d = Drawing(800, 430, "Boxes around the parts that two occluders hide in each quarter of the light")
     d.text((20, 26), "The light's quarters as seen from *p*, and boxes around what is hidden", 14, bold=True)
     view = View(d, (20, 42, 370, 370), (-1.05, 1.05), (-1.05, 1.05))
     view.polygon(SQUARE, "#fff7df", LIGHT, 2)
@@ -204,7 +204,7 @@ def blend_figure():
 def ramp_figure():
     lamp, edge = ((-1.0, 5.0), (1.0, 5.0)), (1.9, 2.4)
     centre = mix(*lamp, 0.5)
-    # Front touches the light so that all of it is visible beyond; back so that nothing is.
+    # Both planes touch the light: in front of the front plane all of it is visible, behind the back plane nothing.
     at = {name: meet(q, edge, (0, 0), (1, 0))[0] for name, q in
           (("front", lamp[0]), ("back", lamp[1]), ("hard", centre))}
     at["front"], at["back"] = max(at["front"], at["back"]), min(at["front"], at["back"])
@@ -219,7 +219,7 @@ def ramp_figure():
         return back / (front + back) if at["back"] < x < at["front"] else float(x >= at["front"])
 
     def visible(x):
-        """The share of the light that a board from far left to the edge leaves, by counting."""
+        """Returns the visible share of the light beyond a board that reaches from far left to the edge, by counting."""
         n, seen = 4000, 0
         for i in range(n):
             l = mix(*lamp, (i + 0.5) / n)
@@ -227,7 +227,7 @@ def ramp_figure():
             seen += crossing > edge[0]
         return seen / n
 
-    d = Drawing(800, 480, "A penumbra wedge from the side, and the ramp across it beside the true visibility")
+    d = Drawing(800, 480, "A penumbra wedge from the side, and the ramp across it, compared with the true visibility")
     d.text((20, 26), "A wedge from the side, and *V* along the floor", 14, bold=True)
     view = View(d, (20, 36, 540, 290), (-1.6, 5.2), (-0.25, 5.4), stretch=True)
     view.polygon([edge, ends["front"], ends["back"]], GREEN, opacity=0.15)
@@ -277,11 +277,11 @@ def plateaus_figure():
         return 1 - depth * depth * (3 - 2 * depth)
 
     def visible(x):
-        """The share of the light that a board from far left to the edge leaves, in closed form."""
+        """Returns the visible share of the light beyond a board that reaches from far left to the edge, in closed form."""
         at = x + (edge[0] - x) * height / (height - (height - edge[1]))  # where the ray from x through the edge meets the light
         return min(max((lamp[1][0] - at) / 2, 0), 1)
 
-    d = Drawing(800, 480, "The outer penumbra of a plateau from the side, beside the true visibility")
+    d = Drawing(800, 480, "The outer penumbra of a plateau from the side, compared with the true visibility")
     d.text((20, 26), "An edge from the side, and *V* along the floor", 14, bold=True)
     view = View(d, (20, 36, 540, 290), (-1.6, 7.2), (-0.25, 5.4), stretch=True)
     view.polygon([edge, (hard, 0), (hard + reach, 0)], GREEN, opacity=0.15)

@@ -2,7 +2,7 @@
 """Figures of L. Atty, N. Holzschuch, M. Lapierre, J.-M. Hasenfratz, C. Hansen, F. Sillion, *Soft shadow maps: efficient
 sampling of light source visibility*, Computer Graphics Forum 25 (4), 2006: error and work of `soft-shadow-map`.
 
-The paper's Buddha is not at hand; a ball takes its place. Errors are the paper's (section 5.2.1)."""
+The paper's Buddha is not available; a ball takes its place. The measure of errors is the paper's (section 5.2.1)."""
 
 from chart import Chart, image, key
 from drawing import INK, Drawing
@@ -22,13 +22,13 @@ def plate(y=2.5, half=0.8, x=0.0):
 
 
 def with_speck(y=2.5, half=0.8, x=0.0):
-    """A plate, and a speck off its corner that widens the window by a part of a texel: without it the map, which fits the casters,
-    would end where the plate does, and texels' borders would fall on its edges at every size."""
+    """Returns a plate, and a speck off its corner that widens the map's window by a fraction of a texel. Without the speck the map,
+    which fits the casters, would end at the plate's edges, and texel borders would fall on these edges at every size."""
     return [plate(y, half, x), square("speck", [x + half + 0.057 * half, y, half + 0.031 * half], 0.002)]
 
 
 def s0_curves(runner, cases, size=128, beside=("contour:size={}:traversal=hierarchy",), receivers=128, pixels=48):
-    """Measures, for each (x, scene), the paper's error of one and two passes and of what stands beside them."""
+    """Measures, for each (x, scene), the paper's error of one and two passes, and of the methods in `beside`."""
     rows = []
     for x, world, of in cases:
         entries = methods(of or size, receivers) + [text.format(of or size) for text in beside]
@@ -50,7 +50,7 @@ def measure_resolution(runner):
 
 def draw_resolution(data):
     d = Drawing(900, 372, "Atty et al. 2006, figure 17: error of soft shadow maps against the resolution of the occluder map",
-                "Three charts. Plate: one pass equals two, the error falls on, with spikes. Ball and bunny: the error of "
+                "Three charts. Plate: one pass equals two, the error keeps falling, with spikes. Ball and bunny: the error of "
                 "one pass and of two stays where it is beyond some 60 texels; contour and two by two sub-lights fall below it.")
     for i, (body, top) in enumerate((("plate", 0.08), ("ball", 0.08), ("bunny", 0.08))):
         chart = Chart(d, (50 + 290 * i, 50, 240, 220), (0, 260), (0, top), f"({'abc'[i]}) {body}", "texels on a side of the map",
@@ -138,7 +138,7 @@ def measure_work(runner):
 
 
 def draw_work(data):
-    d = Drawing(900, 660, "Atty et al. 2006, figures 21 to 24: what soft shadow maps cost, counted, and small maps for large lights",
+    d = Drawing(900, 660, "Atty et al. 2006, figures 21 to 24: the counted cost of soft shadow maps, and small maps for large lights",
                 "Four charts. Pairs of texels do not depend on triangles; they grow with the fourth power of both maps' "
                 "resolution, with the second of one alone, and with the light; under large lights a map of 24 texels has the error of one of 192.")
     top = max(row[4] for row in data["triangles"])
@@ -174,7 +174,7 @@ def draw_work(data):
 
 
 def measure_blend(runner):
-    """The light as the floor sees it is 53 texels wide at 128 × 128 and 213 at 512 × 512."""
+    """Measures sums in 16 and 32 bits. As seen from the floor, the light is 53 texels wide at 128 × 128 and 213 at 512 × 512."""
     world = scene([plate(y=2.5, half=1.2)], half=1.0)
     entries = {"128, fp16": "soft-shadow-map:size=128:receiverSize=96:precision=fp16",
                "512, fp16": "soft-shadow-map:size=512:receiverSize=96:precision=fp16",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of L. Bavoil, S. Callahan, C. Silva, *Robust soft shadow mapping with depth peeling*, University of Utah,
-UUSCI-2006-028: layers, gap filling and midpoints. Strands of hair take the place of the paper's dandelion."""
+UUSCI-2006-028: layers, gap filling and midpoints. Strands of hair replace the paper's dandelion."""
 
 from chart import Chart, image, key
 from drawing import DARK, Drawing
@@ -78,7 +78,7 @@ BIASES = [0.0, 0.125, 0.5, 2.0, 8.0, 32.0, 128.0]
 
 
 def measure_bias(runner):
-    """A ball and a box that stand on a floor that casts, too; seen with their own shaded sides."""
+    """Measures biases on a ball and a box on a floor. The floor casts, too, and the camera sees the shaded sides of both objects."""
     world = scene([ball(y=0.8, x=-0.9, radius=0.8, segments=32), box([1.0, 0.5, 0], [0.5, 0.5, 0.5])], half=0.5, floor_casts=True)
     world["camera"] = {"eye": [1.5, 4.2, 4.6], "target": [0, 0.4, 0], "verticalFov": 42}
     variants = ["backproject:size=128:fill=none:depth={}:bias={}", "bitmask:size=128:depth={}:bias={}"]
@@ -91,7 +91,7 @@ def measure_bias(runner):
 
 
 def draw_bias(data):
-    d = Drawing(900, 372, "Bavoil et al. 2006, figure 3: too little bias shades what is lit, too much moves the shadow",
+    d = Drawing(900, 372, "Bavoil et al. 2006, figure 3: too little bias shades lit surfaces, too much moves the shadow",
                 "Three charts against the bias: the share of lit pixels that are dark falls, that of the umbra that is lit rises, and RMSE has a "
                 "minimum between. Midpoints without any bias come near to the best of them.")
     xs = [1 / 32] + BIASES[1:]

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Charts of measured numbers on a Drawing: axes, curves with a marker each, bars, pictures."""
+"""Charts of measured numbers on a Drawing: axes, curves with one kind of marker each, bars, pictures."""
 
 from math import log10
 
 from drawing import BLUE, DARK, FAINT, GREEN, INK, LIGHT, PALE, RED, number
 
 PURPLE = "#7b3fa0"
-# A colour and a marker each, so that curves differ without colour, too.
+# Each style has a colour and a marker, so that curves differ without colour, too.
 STYLES = [(BLUE, "circle"), (RED, "square"), (GREEN, "triangle"), (PURPLE, "diamond"), (DARK, "ring"), (LIGHT, "cross")]
 
 
@@ -91,7 +91,7 @@ def mark(d, at, colour, marker, r=3.6):
 
 
 def key(d, at, entries, step=None):
-    """Markers and what they stand for: below one another, or `step` pixels apart in a row."""
+    """Draws a key of markers and texts: below one another, or in a row, `step` pixels apart."""
     x, y = at
     for style, text in entries:
         colour, marker = STYLES[style]
@@ -105,7 +105,7 @@ def key(d, at, entries, step=None):
 
 
 def image(d, at, side, data, caption, text=None):
-    """A picture in base64 with pixels left square, and what it is below it."""
+    """Draws a picture in base64 without smoothing its pixels, and its caption below it."""
     x, y = at
     d.raw(f'<image x="{number(x)}" y="{number(y)}" width="{number(side)}" height="{number(side)}" '
           f'style="image-rendering:pixelated" href="data:image/png;base64,{data}"/>')

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of E. Eisemann, U. Assarsson, M. Schwarz, M. Wimmer, *Casting shadows in real time*, SIGGRAPH Asia 2009 courses: what
-filters, micropatches, slices and the fusion of occluders get wrong, and how many silhouette edges meshes have."""
+"""Figures of E. Eisemann, U. Assarsson, M. Schwarz, M. Wimmer, *Casting shadows in real time*, SIGGRAPH Asia 2009 courses: errors of
+filters, micropatches, slices and the fusion of occluders, and the number of silhouette edges of meshes."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ def row_scene(casters, **more):
 
 
 def profile(found, entry):
-    """V along the middle row of a picture of WIDTH × 8 pixels."""
+    """Returns V along the middle row of a picture of WIDTH × 8 pixels."""
     return [rounded(v) for v in found[entry]["V"][4 * WIDTH:5 * WIDTH]]
 
 
@@ -54,9 +54,9 @@ def measure_pcss(runner):
 
 
 def draw_pcss(data):
-    d = Drawing(900, 372, "Course notes, figures 5.3 and 5.4: blockers of pcss that are none, and one mean height for two",
-                "Two charts of V along a line on the floor, exact and by pcss, backproject and contour. Beside a tall wall pcss darkens what is lit. "
-                "Under plates at two heights its penumbra is as of one plate between them.")
+    d = Drawing(900, 372, "Course notes, figures 5.3 and 5.4: false blockers of pcss, and one mean height for two blockers",
+                "Two charts of V along a line on the floor, exact and by pcss, backproject and contour. Next to a tall wall pcss darkens lit points. "
+                "Under plates at two heights its penumbra is that of one plate between them.")
     for i, (which, title) in enumerate((("wall", "(a) beside a wall 4 high at x = −1.6"), ("heights", "(b) below a plate at 3.8 and one at 0.6"))):
         draw_rows(d, (60 + 430 * i, 50, 370, 230), data[which], title, 2.5)
     d.line((60, 336), (82, 336), INK, 2.6)
@@ -129,7 +129,7 @@ def turned_slope():
 
 
 def overlapping():
-    """Apart as the light's centre sees them, one behind the other from below their sides."""
+    """Returns two plates that are apart as seen from the light's centre, and one behind the other as seen from below their sides."""
     return [square("left", [-0.5, 3.4, 0], 0.42, 1.2), square("right", [0.55, 2.2, 0], 0.42, 1.2)]
 
 
@@ -147,7 +147,7 @@ def measure_gaps(runner):
 
 
 def shade(value, worst):
-    """A pale colour: red toward too bright, blue toward too dark."""
+    """Returns a pale colour: redder the brighter a value is than the truth, bluer the darker."""
     part = min(abs(value) / worst, 1)
     other = round(255 - 110 * part)
     return f"#ff{other:02x}{other:02x}" if value > 0 else f"#{other:02x}{other:02x}ff"
@@ -177,7 +177,7 @@ LAYOUTS = {"apart": (0.0, 0.8), "half overlapping": (-0.4, 0.4), "nested": (-0.8
 
 
 def measure_fusion(runner):
-    """Two plates hide a fraction 0.4 of the light each, from the floor's middle: light 2 wide at height 5, plates at 3 and 2."""
+    """Measures two plates that each hide 0.4 of the light from the floor's middle. The light is 2 wide at height 5; the plates are at 3 and 2."""
     data = {}
     for name, (first, last) in LAYOUTS.items():
         a, b = (-0.8 * 3 / 5, 0.0), (first * 2 / 5, last * 2 / 5)
@@ -204,7 +204,7 @@ def draw_fusion(data):
     for i, (name, _) in enumerate(FUSION):
         mark(d, (66 + 122 * i, 325), INK if i == 0 else STYLES[i - 1][0], "square", 5)
         d.text((76 + 122 * i, 329), name, 11)
-    d.text((60, 358), "As the centre of the light sees them the plates are apart in the first scene alone: of the lower one a single map holds what is left.", 11.5)
+    d.text((60, 358), "Only in the first scene are the plates apart as seen from the light's centre; in the others a single map lacks the hidden part of the lower one.", 11.5)
     return d.finish()
 
 
@@ -234,7 +234,7 @@ def draw_slices(data):
 
 
 def measure_variance(runner):
-    """Two sheets, Δ apart, D above the floor; the lower one covers all."""
+    """Measures two sheets, Δ apart, D above the floor; the lower one covers everything."""
     rows = []
     for share in (0.25, 0.5, 1.0, 2.0, 4.0):  # D / Δ
         total = 3.0
@@ -294,7 +294,7 @@ def draw_levels(data):
 
 
 def measure_layers(runner):
-    """A ball, and below it a plate that the light's centre does not see."""
+    """Measures a ball, and below it a plate that is hidden from the light's centre."""
     casters = [ball(y=3.0, radius=0.8), square("hidden", [0, 1.2, 0], 0.8)]
     variants = [f"bitmask:size=64:layers={k}" for k in (1, 2, 3, 4)]
     found = runner.compare(scene(casters, half=0.8), variants, samples=256)
@@ -303,7 +303,7 @@ def measure_layers(runner):
 
 
 def draw_layers(data):
-    d = Drawing(900, 290, "Course notes, figure 1.8: what one layer from the light's centre does not hold",
+    d = Drawing(900, 290, "Course notes, figure 1.8: surfaces missing from one layer as seen from the light's centre",
                 "Three pictures of V on the floor: one layer, four layers, exact. With one layer half of the shadow is missing.")
     d.text((30, 28), "V below a ball and a plate that hides behind it", 14, bold=True)
     for i, (name, tile) in enumerate(zip(("1 layer", "4 layers", "exact"), data["tiles"])):
@@ -322,8 +322,8 @@ MODELS = {"asteroid, low": "asteroid-low.3ds", "horse": "horse.3ds", "cat": "cat
 
 
 def silhouettes(runner, body):
-    """The triangles of a body about 2 high around (0, 2, 0), and its silhouette edges: the mean over six lights 5 away on the axes of an
-    icosahedron, each facing the body."""
+    """Returns the number of triangles of a body about 2 high around (0, 2, 0), and its mean number of silhouette edges, over six lights
+    on the axes of an icosahedron, each 5 away and facing the body."""
     world = scene([body])
     del world["meshes"][0]  # the floor
     golden = (1 + sqrt(5)) / 2
@@ -354,7 +354,7 @@ def measure_silhouettes(runner):
 
 
 def power_of(rows):
-    """Returns c and e of the curve c n^e nearest to the rows, least squares of the logarithms."""
+    """Returns c and e of the curve c n^e nearest to the rows, by least squares of the logarithms."""
     logs = [(log(n), log(edges)) for _, n, edges in rows]
     mean_n, mean_edges = (sum(pair[k] for pair in logs) / len(logs) for k in range(2))
     e = sum((n - mean_n) * (edges - mean_edges) for n, edges in logs) / sum((n - mean_n)**2 for n, _ in logs)
@@ -363,8 +363,8 @@ def power_of(rows):
 
 def draw_silhouettes(data):
     d = Drawing(900, 372, "Course notes, section 5.3.4: silhouette edges against triangles",
-                "A chart, both axes logarithmic: of a ball cut finer and finer silhouette edges grow with the square root of its triangles; of five models they grow "
-                "with nearly the number of triangles. All are far fewer than triangles.")
+                "A chart with two logarithmic axes. For balls of more and more segments, silhouette edges grow with the square root of the triangles; for five models they grow "
+                "with nearly the number of triangles. Silhouette edges are always far fewer than triangles.")
     chart = Chart(d, (70, 50, 520, 250), (30, 5e5), (5, 4e4), "silhouette edges, mean over six lights", "triangles n", "", log_x=True, log_y=True, x_ticks=(100, 1000, 10000, 100000),
                   x_names=("100", "1,000", "10,000", "100,000"), y_ticks=(10, 100, 1000, 10000))
     ends = (40, 4e5)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Scenes of the papers' figures, runs of `penumbra compare` on them, and what is measured in its pictures.
+"""Scenes of the papers' figures, runs of `penumbra compare` on them, and measures of its pictures.
 
-Truth is V of `edge-scatter:rows=exact`, exact areas, at every pixel of the same run. The floor is looked at from just above it
-and from below the casters, straight down: its pixels are evenly spread and nothing stands before them. Lengths are in the
-scenes' unit, errors in V."""
+Truth is V of `edge-scatter:rows=exact`, exact areas, at every pixel of the same run. The camera looks straight down at the floor,
+from just above it and below the casters, so that pixels are evenly spread on the floor and nothing is in front of it. Lengths are
+in the scenes' unit, errors in V."""
 
 import base64
 import json
@@ -64,8 +64,8 @@ def dot(a, b):
 
 
 def judged(world, channels):
-    """Returns, for each pixel, whether errors are counted there: it shows a surface, which lies in front of the first light, if that is a
-    rectangle, and has all of this light above its tangent plane."""
+    """Returns for each pixel whether errors are counted there. The pixel must show a surface. If the first light is a rectangle, the surface
+    must also be in front of the light, with the whole light above its tangent plane."""
     if "dome" in world["lights"][0]:
         return [a > 0 for a in channels["A"]]
     light = world["lights"][0]["rectangle"]
@@ -81,7 +81,7 @@ def judged(world, channels):
 
 
 class Runner:
-    """Runs the program, and keeps what each run was."""
+    """Runs the program, and records the commands of its runs."""
 
     def __init__(self, program):
         self.program = Path(program).resolve()
@@ -89,8 +89,8 @@ class Runner:
         self.device = None
 
     def compare(self, world, methods, size=48, runs=1, samples=None, more=()):
-        """{entry: {"V": pixels, "A", "judged", "counters", "passes", "evaluate", "light", "rmse"}}, with "truth" among them. `size`: pixels on
-        a side, or (width, height)."""
+        """Returns {entry: {"V": pixels, "A", "judged", "counters", "passes", "evaluate", "light", "rmse"}}, with "truth" as one of the entries.
+        `size`: pixels per side, or (width, height)."""
         width, height = size if isinstance(size, tuple) else (size, size)
         entries = list(dict.fromkeys([TRUTH, *methods]))
         args = ["--methods", ",".join(entries), "--reference", "raytrace", "--reference-samples", "16", "--runs", str(runs),
@@ -126,7 +126,7 @@ class Runner:
 
 
 def measures(found, entry, keep=None):
-    """Errors of an entry against the truth of its run. `s0` is the measure of Atty et al. 2006: the sum of |V − V_ref| over
+    """Returns errors of an entry against the truth of its run. `s0` is the measure of Atty et al. 2006: the sum of |V − V_ref| divided by
     the number of pixels in umbra or penumbra. `leak`: share of the umbra with V > 0.05; `dark`: share of lit pixels with V < 0.95."""
     pairs = [(v, r) for v, r, a in zip(found[entry]["V"], found["truth"]["V"], found["truth"]["judged"]) if a]
     shadow = sum(r < 1 for _, r in pairs)
@@ -146,11 +146,11 @@ def measures(found, entry, keep=None):
 
 
 def rounded(x):
-    """Four significant digits: what is kept of a measured number."""
+    """Returns a measured number with four significant digits, as it is kept."""
     return x if isinstance(x, int) else float(f"{x:.4g}")
 
 
 def picture(found, entry, size):
-    """V as a grey PNG in base64."""
+    """Returns V as a grey PNG in base64."""
     values = [round(255 * min(max(v, 0), 1)) for v in found[entry]["V"]]
     return base64.b64encode(write_grey([bytes(values[y * size:(y + 1) * size]) for y in range(size)])).decode()

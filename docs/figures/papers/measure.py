@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Measures the numbers of the papers' figures with a built program, and draws the figures. Python's standard library and the models
-of Debian's glmark2-data are all that it needs.
+"""Measures the numbers of the papers' figures with a built program, and draws the figures. Needs only Python's standard library and the
+models of Debian's glmark2-data.
 
   docs/figures/papers/measure.py [NAME…] [--program build/penumbra]      all of them: an hour or two on two cores"""
 
@@ -20,7 +20,7 @@ from papers import FIGURES, HERE, drawn  # noqa: E402
 
 
 def written(kept, data):
-    """Returns JSON, a line for each part of the data."""
+    """Returns JSON with one line for each part of the data."""
     text = json.dumps(kept, ensure_ascii=False, indent=1).removesuffix("\n}")
     parts = [f"  {json.dumps(name)}: {json.dumps(part, ensure_ascii=False)}" for name, part in data.items()]
     return text + ',\n "data": {\n' + ",\n".join(parts) + "\n }\n}\n"

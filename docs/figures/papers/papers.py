@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The papers' figures, and others of measured numbers: for each a module has how it is measured and how it is drawn. NAME.json beside this file has the measured
-numbers, NAME.svg the figure drawn of them; docs/figures/make.py draws, docs/figures/papers/measure.py measures."""
+"""The papers' figures, and other figures of measured numbers. For each, a module has a function that measures it and one that draws it. NAME.json in this
+folder has the measured numbers, NAME.svg the figure drawn from them; docs/figures/make.py draws, docs/figures/papers/measure.py measures."""
 
 import json
 import sys
@@ -23,13 +23,13 @@ for module in (atty, schwaerzler, bavoil, yang, course, times, scaling):
 
 
 def drawn(name):
-    """The figure as SVG, of the numbers that are kept."""
+    """Returns the figure as SVG, drawn from the kept numbers."""
     kept = json.loads((HERE / f"{name}.json").read_text(encoding="utf-8"))
     return FIGURES[name][1](kept["data"])
 
 
 def stale(check):
-    """Draws all figures; with `check`, says which of the committed ones differ."""
+    """Draws all figures. Returns complaints: missing numbers, files that belong to no figure and, with `check`, committed figures that differ."""
     complaints = []
     for name in FIGURES:
         path, numbers = HERE / f"{name}.svg", HERE / f"{name}.json"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Measures how pictures' cost grows with triangles, pixels and lights: processor seconds (user + system, all cores) of whole runs of
-`penumbra render`, which a busy machine changes less than the clock on the wall, and the largest resident set."""
+"""Measures how the cost of pictures grows with triangles, pixels and lights: the largest resident set, and processor seconds (user + system,
+all cores) of whole runs of `penumbra render`. The load of the machine affects processor seconds less than elapsed time."""
 
 import json
 import os
@@ -20,8 +20,8 @@ SAMPLES = 256
 
 
 def run(runner, scene, size, runs):
-    """Medians of processor seconds and of the largest resident set in MiB. The resident set is what the program itself reports: the
-    system's number for a child begins with the size of the process that started it."""
+    """Returns the medians of processor seconds and of the largest resident set in MiB. The latter is the program's own number:
+    the system's number for a child process starts at the size of the process that started it."""
     seconds, resident = [], []
     width, height = size if isinstance(size, tuple) else (size, size)
     with tempfile.TemporaryDirectory() as folder:
@@ -56,14 +56,14 @@ def shipped(name):
 
 
 def machine():
-    """The processor, as the system calls it."""
+    """Returns the system's name of the processor, and the number of threads."""
     with open("/proc/cpuinfo", encoding="utf-8") as info:
         model = next(line.split(":")[1].strip() for line in info if line.startswith("model name"))
     return f"{model}, {os.cpu_count()} threads"
 
 
 def measure_triangles(runner):
-    """Rows of triangles, processor seconds and MiB; the first, a terrain of two triangles, shows the cost that every picture has."""
+    """Returns rows of triangles, processor seconds and MiB. The first, a terrain of two triangles, shows the fixed cost of a picture."""
     rows = []
     for cells in ((1, 1), *TERRAIN):
         scene = shipped("terrain-1m")
@@ -78,14 +78,14 @@ def measure_triangles(runner):
 
 
 def measure_pixels(runner):
-    """Rows of pixels, pixels in penumbra, processor seconds and MiB; the first row, of 16² pixels, shows the cost that every picture has."""
+    """Returns rows of pixels, pixels in penumbra, processor seconds and MiB. The first, with 16² pixels, shows the fixed cost of a picture."""
     scene = shipped("bunny")
     sizes = {}
     for side in (16, *SIDES):
         pixels = side[0] * side[1] if isinstance(side, tuple) else side * side
         sizes[pixels] = run(runner, scene, side, 3 if pixels < 2e6 else 1)
         print("pixels", pixels, *sizes[pixels], flush=True)
-    # Last, because the memory that this script holds when it starts a program is counted as that program's memory.
+    # These runs come last: the system counts the memory that this script holds when it starts a program as the program's own.
     share, wide = penumbra_share(runner, scene, "256x256"), penumbra_share(runner, scene, "480x270")
     shares = [wide if pixels == 3840 * 2160 else share for pixels in sizes]
     rows = [[pixels, round(part * pixels), rounded(seconds), rounded(resident)]
@@ -96,8 +96,8 @@ def measure_pixels(runner):
 
 
 def measure_lights(runner):
-    """Rows of lights, processor seconds and MiB: squares in a circle above the default scene's bunny, all as large as that scene's light,
-    size."""
+    """Returns rows of lights, processor seconds and MiB. The lights are squares in a circle above the bunny of the default scene, each
+    as large as this scene's light."""
     rows = []
     for count in LIGHTS:
         scene = shipped("bunny")
@@ -116,14 +116,14 @@ def measure_lights(runner):
 
 
 def step_for(values):
-    """Returns a round step, such that four steps reach the largest value."""
+    """Returns a round number of which four times is above the largest value."""
     least = 1.05 * max(values) / 4
     power = 10 ** floor(log10(least))
     return next(k * power for k in (1, 2, 2.5, 5, 10) if k * power >= least)
 
 
 def two_charts(title, text, xs, left, right, x_label, ticks, names=None):
-    """`left`, `right`: a title, and curves, each with its name and points."""
+    """Draws two charts. `left`, `right`: a title, and curves, each a name and points."""
     d = Drawing(900, 350, title, text)
     for i, (heading, curves) in enumerate((left, right)):
         step = step_for([y for _, points in curves for _, y in points])

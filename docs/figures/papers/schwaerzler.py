@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of M. Schwärzler, *Real-time soft shadows with adaptive light source sampling*: maps where they are needed.
-The paper gives no epsilon; figures show what it does."""
+The paper gives no value of epsilon; the figures show its effect."""
 
 from math import cos, radians, sin
 
@@ -16,12 +16,12 @@ def entry(epsilon, more=""):
 
 
 def world_of(body, half):
-    """Close to the floor, so that penumbrae are narrow."""
+    """Returns a scene whose caster is close to the floor, so that penumbrae are narrow."""
     return scene([turned_plate(0.8) if body == "plate" else ball(y=1.1, radius=0.9)], half=half)
 
 
 def turned_plate(y, half=0.9, turn=20):
-    """Turned, so that its edges are in step neither with the light's points nor with texels."""
+    """Returns a plate that is turned, so that its edges are aligned neither with the light's points nor with texels."""
     c, s = half * cos(radians(turn)), half * sin(radians(turn))
     return {"name": "plate", "quad": {"center": [0, y, 0], "halfU": [c, 0, s], "halfV": [s, 0, -c]}}
 
@@ -61,7 +61,7 @@ def draw_maps(data):
 
 
 def measure_pictures(runner):
-    """The largest epsilon of a geometric row that still gives 14 maps or more: the paper's figure 1 has 14 in place of 81."""
+    """Uses the largest epsilon of a geometric series that still gives 14 maps or more: the paper's figure 1 has 14 instead of 81."""
     world = world_of("plate", 0.35)
     row = [0.005 * 1.35 ** i for i in range(12)]
     found = runner.compare(world, [entry(epsilon) for epsilon in row], size=48)
@@ -104,7 +104,7 @@ TILT_EPSILONS = [0.02, 0.04, 0.08]
 
 
 def measure_tilt(runner):
-    """The receiver turns below a plate that stays; the camera turns with it."""
+    """Measures a receiver that is turned below a fixed plate; the camera turns with the receiver."""
     rows = []
     for tilt in (0, 15, 30, 45, 60):
         c, s = cos(radians(tilt)), sin(radians(tilt))

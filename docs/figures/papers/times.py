@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Error against time of every method, by penumbra-bench: on the default scene and on the one whose penumbrae are widest."""
+"""Figure of error against time of every method, by penumbra-bench: on the default scene and on the one with the widest penumbrae."""
 
 import json
 import subprocess
@@ -23,8 +23,8 @@ SIZE, SAMPLES, JUDGED = 128, 256, 1000
 
 
 def measure(runner):
-    """Measures for each scene rows of method, seconds of `light`, of `evaluate`, RMSE against exact areas. A method that refuses is left
-    out."""
+    """Measures, for each scene, rows of method, seconds of `light`, seconds of `evaluate`, and RMSE against exact areas. Methods that refuse
+    the scene are left out."""
     data = {"of": f"{SIZE}² pixels, {SAMPLES} light samples, every option as it is by default; RMSE over {JUDGED} view samples in penumbra"}
     for scene in SCENES:
         args = ["--scene", scene, "--size", str(SIZE), "--light-samples", str(SAMPLES), "--peer", "none", "--reference", "exact", "--sample-pixels",
@@ -67,7 +67,7 @@ def draw(data):
     of, data = data["of"], {name: rows for name, rows in data.items() if name != "of"}
     tall = 110 + 16.4 * max(map(len, data.values()))
     d = Drawing(900, round(46 + tall * len(data)), "Error against time of all methods",
-                "A chart a scene: seconds of a changed light against the root mean square error of V. Filters are fast and wrong, "
+                "A chart for each scene: seconds of a changed light against the root mean square error of V. Filters are fast and wrong, "
                 "backprojection is slower and nearer, methods with a map a light sample are slowest; exact edges are fast and right.")
     seconds = [light + evaluate for rows in data.values() for _, light, evaluate, _ in rows]
     ends = (0.8 * min(seconds), 1.3 * max(seconds))

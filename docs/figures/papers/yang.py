@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """Figures of B. Yang, J. Feng, G. Guennebaud, X. Liu, *Packet-based hierarchal soft shadow mapping*, EGSR 2009: `packet`,
-`contour`, and what they are compared with."""
+`contour`, and the methods with which they are compared."""
 
 from chart import STYLES, Chart, image, key, mark
 from drawing import DARK, INK, Drawing
@@ -26,9 +26,9 @@ def measure_samples(runner):
 
 
 def draw_samples(data):
-    d = Drawing(900, 380, "Yang et al. 2009, figures 7 and 8: cells and nodes that are looked at, a pixel",
-                "Two charts on a logarithmic axis. For ball and bunny and every size of the light a hierarchy of contours looks at "
-                "fewer than a min-max quadtree, that at fewer than a flat kernel, and packets at fewest.")
+    d = Drawing(900, 380, "Yang et al. 2009, figures 7 and 8: cells and nodes examined per pixel",
+                "Two charts on a logarithmic axis. For ball and bunny and every size of the light a hierarchy of contours examines "
+                "fewer than a min-max quadtree, this fewer than a flat kernel, and packets the fewest.")
     for i, body in enumerate(data):
         chart = Chart(d, (70 + 430 * i, 50, 350, 230), (0.22, 2.3), (1, 1e4), f"({'ab'[i]}) {body}", "half the light's side",
                       "cells and nodes a pixel", log_x=True, log_y=True, x_ticks=(0.25, 0.5, 1, 2), y_ticks=(1, 10, 100, 1000, 10000))
@@ -78,7 +78,7 @@ def draw_packets(data):
     for style in (1, 2):
         chart.curve([(row[0], row[style]) for row in data["coherent"]], style)
     chart.note(0.25, 0.06, "paper, 1280 × 1024 pixels, light 1 : 2 : 4: 0.52, 0.68, 0.88", DARK)
-    d.text((70, 340), "The bunny over the floor; (a) map of 64 × 64, light of half-size 0.5; (b) seen from the side, map of 256 × 256: of the packets that look at all.", 11.5)
+    d.text((70, 340), "The bunny over the floor; (a) map of 64 × 64, light of half-size 0.5; (b) seen from the side, map of 256 × 256: of the packets that search at all.", 11.5)
     return d.finish()
 
 
@@ -87,7 +87,7 @@ VIEWS = [("GBP07: contour", "contour:size=128:traversal=hierarchy"), ("S = 2", "
 
 
 def gap_casters():
-    """A small plate high above a large one."""
+    """Returns a small plate high above a large one."""
     return [square("small", [0, 3.5, 0], 0.3), square("large", [0, 1.5, 0], 1.6)]
 
 
