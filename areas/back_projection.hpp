@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-// Triangles as seen from a view sample p on the light's plane, exactly. Internal to areas/.
+// Projects triangles exactly, from a view sample p onto the light's plane. Internal to areas/.
 //
 // With r = p − c and d = q − p the line from p through q meets the light's plane c + s u + t v at s = S/W, t = T/W:
 //   S = −det(r, v, d)    T = −det(u, r, d)    W = −det(u, v, d)    (all negated if p is behind the plane, so that

@@ -119,7 +119,7 @@ class ObjReader {
   void vertex(std::string_view line) {
     const std::uint64_t number = vertices() + 1;
     if (number > std::numeric_limits<std::uint32_t>::max()) fail("more than 4,294,967,295 vertices");
-    // x y z, x y z w, or a position and a colour. Colours are ignored, and need not be numbers; so are further words.
+    // x y z, x y z w, or a position and a colour. Colours and further words are ignored, and need not be numbers.
     std::array<double, 4> numbers{0, 0, 0, 1};
     std::array<std::string_view, 8> words;
     std::size_t count = 0;
@@ -162,7 +162,7 @@ class ObjReader {
     return *index > 0 ? *index - 1 : static_cast<std::int64_t>(places_.size()) + *index;
   }
 
-  /// Gives each position its texture coordinates; of a vertex with several coordinates, each but the first becomes a
+  /// Gives each position its texture coordinates; if a vertex has several coordinates, each but the first becomes a
   /// new position.
   void place_vertices() {
     mesh::TriangleSoup& soup = mesh_.soup;

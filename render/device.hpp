@@ -14,7 +14,7 @@
 namespace penumbra::render {
 
 /// The device has work that it does not finish. The process cannot continue with the device, or stop it: after
-/// unwinding, it must end without the actions of a regular exit (std::_Exit). Therefore not a ResourceError, after
+/// unwinding, the process must end without a regular exit's actions (std::_Exit). Therefore not a ResourceError, after
 /// which some callers continue.
 class DeviceDoesNotAnswer : public Error {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Test whether a surface with holes (alphaMode MASK) is solid at a texel's centre: the nearest texel of the picture's
+// Test whether a surface with holes (MASK) is solid at a map texel's centre, by the nearest texel of the picture's
 // level 0, consistent with visibility::alpha_at. Rasterisers interpolate linearly over the triangle as drawn. Corners
 // therefore carry their values times a weight, and the weight itself, by which this shader divides: in a scene in
 // projective coordinates, the weight is not the face's w.

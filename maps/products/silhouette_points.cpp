@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computes silhouette points in cells of a map: P. Sen, M. Cammarano, P. Hanrahan, Shadow silhouette maps, SIGGRAPH
 // 2003, section 4.1. Departures: edges are traversed on the host, not drawn as quads; of several edges in a cell the
-// nearest counts, where the paper keeps the last that is not hidden, so that the result does not depend on the order of
+// nearest counts (the paper keeps the last that is not hidden), so that the result does not depend on the order of
 // triangles; points are floats, not bytes.
 
 #include "maps/products/silhouette_points.hpp"
@@ -23,7 +23,7 @@
 namespace penumbra::maps {
 namespace {
 
-/// Part [from, to] of the segment from a to b in a cell; determines the fraction of the segment whose point the cell
+/// Part [from, to] of the segment from a to b in a cell; kept() returns the fraction, from a to b, of the point that it
 /// keeps.
 struct Passage {
   glm::dvec2 a, b;  ///< the edge's ends, relative to the cell's lower corner

@@ -37,7 +37,7 @@ class Frames : public ProgramTest {
   }
 };
 
-TEST_F(Frames, OfASequenceAreThoseByThemselves) {
+TEST_F(Frames, OfASequenceEqualThoseRenderedAlone) {
   const Outcome outcome = render({"--frames", "0-8x4", "-o", path("s.####.exr"), "--png", path("s.png"), "--stats",
                                   path("t%02d.json"), "--bits", path("s.####.bits")});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -73,7 +73,7 @@ TEST_F(Frames, AreAtTheirTime) {
 
 /// With reproject=on V depends on earlier frames of the same run only: the run's first frame, and the first one after
 /// frames made by another run, equal those rendered alone. `compare` renders the same frames.
-TEST_F(Frames, ReprojectedBeginWithARun) {
+TEST_F(Frames, ReprojectedDependOnTheSameRunOnly) {
   const std::string method = "shadow-map:size=24:reproject=on";
   const std::vector<std::string> sequence = {"--frames", "1-3", "--method", method, "-o", path("s.exr")};
   std::vector<std::string> counted = sequence;
@@ -151,12 +151,12 @@ TEST_F(Frames, ThatAreTornOrForeignAreMadeAgain) {
       ASSERT_EQ(again.code, 0) << again.err;
       EXPECT_THAT(again.err, HasSubstr(name + " is incomplete, or was not written by this command")) << text.size();
       if (name.ends_with(".json")) continue;  // it contains times
-      EXPECT_EQ(read(name), bytes) << name << ", where " << text.size() << " bytes stood, and exposed as the first is";
+      EXPECT_EQ(read(name), bytes) << name << ": made again over " << text.size() << " bytes, exposed as the first";
     }
   }
 }
 
-/// Moments may lie between frames: here the camera is where it is half a frame later.
+/// `--frame` accepts moments between frames: at 5.5 the camera has moved for half a frame since frame 5.
 TEST_F(Frames, MayBeMoments) {
   ASSERT_EQ(render({"--frame", "5.5", "-o", path("f.exr")}).code, 0);
   const ExrFile image = read_exr(path("f.exr"));
@@ -312,14 +312,14 @@ TEST_F(Frames, MotionSamplesAreMeansOfMoments) {
   }
 }
 
-TEST_F(Frames, MeansAreOfWholeSquaresAndOfNoBits) {
+TEST_F(Frames, PixelSamplesAreRoundedToSquaresAndRefusedWithBits) {
   const auto code = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"-o", path("x.exr")});
     return render(more).code;
   };
   for (const char* wrong : {"0", "-4", "65", "x"}) EXPECT_EQ(code({"--pixel-samples", wrong}), 2) << wrong;
   EXPECT_EQ(code({"--pixel-samples", "4", "--bits", path("x.bits")}), 2);
-  EXPECT_EQ(code({"--motion-samples", "4"}), 2) << "of no frame";
+  EXPECT_EQ(code({"--motion-samples", "4"}), 2) << "motion samples need --frame or --frames";
   EXPECT_EQ(code({"--frame", "1", "--motion-samples", "0"}), 2);
   EXPECT_EQ(code({"--frame", "1", "--motion-samples", "2", "--shutter", "-1"}), 2);
   const Outcome rounded = render({"--pixel-samples", "3", "-o", path("three.exr")});

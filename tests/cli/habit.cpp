@@ -36,7 +36,7 @@ TEST_F(Habit, HelpAndVersionAreCommandsToo) {
   EXPECT_THAT(wrong.err, HasSubstr("did you mean render?"));
 }
 
-TEST_F(Habit, OptionsAreHelpedInGroupsWithTheirDefaultsInOneForm) {
+TEST_F(Habit, HelpListsOptionsInGroupsWithDefaultsInOneForm) {
   const std::string help = run({"render", "--help"}).out;
   std::size_t last = 0;
   for (const char* group :

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests the method `exact`: only the wanted pixels get values, rules, options, and the same bits however a picture is
+// Tests the method `exact`: values for wanted pixels only, refused options, and the same bits however a picture is
 // divided into tiles.
 
 #include "reference/methods.hpp"

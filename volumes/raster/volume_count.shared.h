@@ -32,7 +32,7 @@ struct VolumeFace {
 struct VolumePart {
   DOUBLE3(axis);
   double lower, upper;  // the remaining part of the volumes: lower < n · x < upper
-  DOUBLE3(barrier);     // of a part that toggles: counted between the eye and p where barrier · p > 0, else beyond p
+  DOUBLE3(barrier);     // with kToggles: faces count between the eye and p where barrier · p > 0, else beyond p
   uint bounds;          // valid bounds: kHasLower, kHasUpper, kToggles
   uint unused;
 };

@@ -39,7 +39,7 @@ int side_seen(vec3 p, vec3 n, vec3 anchor, inout bool open) {
 // Scatters one edge with multiplicity k. Unless the edge stays well above p for the whole group (`settled`), its part
 // outside of a window of about twice the light is clipped, so that ends near p's height, or behind p, do not affect
 // precision in the window. If p is within rounding of one of the triangles' planes (`open`), that triangle is a sliver:
-// the samples that it may hide are as close to its edges as if the edges were displaced by `sliver`. (bound window,
+// the samples that it may hide are near its edges, which count as displaced by up to `sliver`. (bound window,
 // bound sliver)
 void scatter_seen(vec3 a, vec3 b, int k, bool open, bool settled, float sliver) {
   const vec3 da = a - at.p, db = b - at.p;

@@ -10,7 +10,7 @@ namespace penumbra::maps {
 /// V as a function of depth for each texel of the light's centre's maps (St-Amour, Paquette and Poulin 2005): lists of
 /// steps. The ray through a texel's centre is at t · direction, with `direction` of length one along the face's axis.
 ///
-/// The buffer holds T + 1 words, the beginning of the list of each of the T texels and the end of the last one, and
+/// The buffer holds T + 1 words (where the list of each of the T texels begins, and where the last list ends), and
 /// then the steps: the bits of t, and the bits of V from there to the next step. Before the first step V is 1.
 class PenumbraEvents final : public MapProduct {
  public:

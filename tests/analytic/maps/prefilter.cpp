@@ -71,7 +71,7 @@ TEST(SummedAreaTables, OfFloatsLoseWhatIntegersKeep) {
   EXPECT_GT(worst_float, 1e-3);
 }
 
-/// A floor and a sphere under a square light, in a window or, with a wall up to the light, a hemicube.
+/// A floor and a sphere under a square light; with `hemicube`, also a wall up to the light (the map has five faces).
 scenes::Scene scene_of(bool hemicube) {
   scenes::Scene scene;
   add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 0, -2}).casts_shadow = false;  // leaves texels empty
@@ -104,7 +104,7 @@ TEST_F(Prefilters, LevelsAreMeansOfTheLevelBefore) {
   }
 }
 
-TEST_F(Prefilters, WhatNoBuffersHoldIsRefusedWithTheSizeThatDoes) {
+TEST_F(Prefilters, ASizeThatNoBufferHoldsIsRefusedAndTheLargestThatFitsIsNamed) {
   const std::uint64_t most = device().limits().max_storage_buffer_range;
   maps::PrefilterOptions options{.kind = maps::PrefilterKind::table,
                                  .functions = std::vector<maps::PrefilterFunction>(300)};

@@ -161,7 +161,7 @@ TEST_P(Soups, OrderStartAndNamesOfCornersDoNotMatter) {
   EXPECT_EQ(before.shortest_edge, after.shortest_edge);
 }
 
-TEST_P(Soups, WindingMattersOnlyToWhatIsAboutIt) {
+TEST_P(Soups, WindingChangesOnlyWindingDuplicateAndClosednessResults) {
   const std::vector<Corners> soup = random_soup(60, 4);
   oracle::Counts before = counts_of(diagnosed(soup_of(soup)));
   oracle::Counts after = counts_of(diagnosed(soup_of(wound_at_random(soup))));
@@ -185,7 +185,7 @@ TEST_P(Soups, ScalingByAPowerOfTwoChangesNothing) {
   }
 }
 
-TEST_P(Soups, ListsAreTheFirstOfTheFullLists) {
+TEST_P(Soups, LimitedListsArePrefixesOfFullLists) {
   const TriangleSoup soup = soup_of(random_soup(80, 4));
   const MeshView mesh{soup.positions, soup.triangles};
   const Diagnosis all = diagnose(mesh, {.list_limit = std::numeric_limits<std::size_t>::max()});

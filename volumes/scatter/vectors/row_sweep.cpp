@@ -69,7 +69,7 @@ void RowSweep::find_first_crossing() {
   first_ = found.at;
 }
 
-/// Invalidates the cached first crossing if gaps from here on are renumbered, or if this one's crossing is gone.
+/// Invalidates the cached first crossing if it may be the crossing of this gap's sides.
 void RowSweep::forget(std::size_t gap) {
   if (crossings_[gap] <= soonest_) first_ = kUnknown;
 }
@@ -148,7 +148,7 @@ void RowSweep::change_places(std::size_t number, double y) {
   begin_gap(number + 1, y);
 }
 
-/// Replaces edges that end by edges that begin there, so that outlines stay in order. Returns false if depths change,
+/// Replaces edges that end at y with edges that begin at y, to keep outlines in order. Returns false if depths change,
 /// or if other edges begin or end.
 bool RowSweep::hand_over(double y) {
   bool all = true;

@@ -183,7 +183,7 @@ RowSum::Directions RowSum::directions_of(const WideEdges& leaf, std::size_t lane
   return {direction_to(edge.a), direction_to(edge.b)};
 }
 
-/// Returns a bound of the rounding error, in double, of the distance of a vector's end inside a side of the window.
+/// Returns a bound of the rounding error, in double, of how far a vector's end is inside a side of the window.
 double RowSum::error_inside(const Direction& direction, int axis) const {
   const double middle = static_cast<double>(grid_.half_cells[axis]), window = 2 * middle + 2;
   return 2 * (height_ * direction.error + (window + std::abs(foot_[axis] - middle)) * direction.error_up +
@@ -288,7 +288,7 @@ void RowSum::count_error(double error) {
   largest_error_ = std::max(largest_error_, error);
 }
 
-/// Drops nearly level edges. A lower edge has a slope above 2¹³ (columns) times the inverse of this height, and
+/// Drops edges no higher than kLevel. Their slope can exceed 2¹³ (columns) times the inverse of this height, and
 /// products with it overflow; without the edge, areas change by less than columns times this height.
 void RowSum::keep(const RowEdge& edge) {
   constexpr double kLevel = 0x1p-900;
