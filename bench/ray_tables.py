@@ -153,7 +153,6 @@ TABLES = {
     "scenes": table("edge-scatter against rays on the shipped scenes", f"{HOW} Seconds of edge-scatter, then plain and nontrivial rays over it.",
                     ("scene", *(f"{count}: {what}" for count in ("256", "1,024", "4,096") for what in ("s", "plain", "nontr."))), (None, *[".4f", QUOTIENT, QUOTIENT] * 3), scene_rows),
     "pairs": table("pairs on which edge-scatter and view-sample differ from raytrace", "512 × 512 pixels; all pairs of a judged view sample and a light sample. "
-                   ""
                    "`penumbra compare --reference-samples same` decides the differing pairs exactly.",
                    ("scene", *(f"{count}: {what}" for count in ("256", "1,024", "4,096") for what in ("pairs", "differing"))), (None,) * 7, pair_rows),
     "lights": table("edge-scatter against rays under every kind of light", f"{HOW} Plain and nontrivial rays over edge-scatter.", ("scene", "light", "pattern", *THREE),

@@ -9,7 +9,7 @@ penumbra_test(maps FULL MapsTable.*
   analytic/maps/closed_form.cpp
   analytic/maps/degenerate.cpp
   analytic/maps/dome_suns.cpp
-  analytic/maps/every_light.cpp
+  analytic/maps/every_light.cpp analytic/maps/every_light_holes.cpp
   analytic/maps/filters_robust.cpp
   analytic/maps/forward_map.cpp
   analytic/maps/formulas.cpp
