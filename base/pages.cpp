@@ -40,7 +40,7 @@ void* memory_of(std::size_t bytes, std::size_t alignment) {
   }
   const bool may_be_kept = bytes >= kLeastAsked && alignment <= kLargePage;
   if (void* const kept = may_be_kept ? penumbra::kept_arrays().take(bytes) : nullptr) return kept;
-  void* first = nullptr;  // (sizes are multiples of large pages, since sanitizers require that of aligned_alloc)
+  void* first = nullptr;
   if (::posix_memalign(&first, std::max(alignment, kLargePage), bytes) != 0) first = nullptr;
   // Covers only pages that belong to the array alone. A system without large pages provides small ones.
   if (first != nullptr) static_cast<void>(::madvise(first, bytes / kLargePage * kLargePage, MADV_HUGEPAGE));

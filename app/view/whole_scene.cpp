@@ -25,7 +25,7 @@ WholeScene read_whole_scene(const session::RunOptions& options, session::Instanc
   if (use == session::InstanceUse::automatic && triangles <= kMostCopies) {
     try {
       return {copy(), {}, use};
-    } catch (const ResourceError&) {  // NOLINT(bugprone-empty-catch): without copies, then
+    } catch (const ResourceError&) {  // NOLINT(bugprone-empty-catch): continues without copies
     }
   }
   read.scene.warnings.push_back(fmt::format(

@@ -183,7 +183,7 @@ class Test:
             self.scene.cycles.use_preview_adaptive_sampling = is_adaptive
             yield from self.begin("CYCLES")
             yield from self.drag("CYCLES", "view", self.turn)
-            if is_adaptive:  # what moved changes little of what Cycles does afterwards
+            if is_adaptive:  # with adaptive sampling only: a lamp's move and a turn keep Cycles equally busy
                 yield from self.drag("CYCLES", "lamp", self.move_lamp)
         for drag in self.drags:
             drag["after"] = [(when, used, self.error(crop)) for when, used, crop in drag["after"]]

@@ -16,8 +16,8 @@ namespace penumbra::scenes {
 ///
 /// - The default scene's node tree; a node's mesh becomes one object for each primitive, named after the node.
 /// - Skins and morph targets; animations of nodes (including cameras and lamps) and weights, at `options.time`.
-/// - Perspective cameras; without one, a camera that sees everything, and a warning.
-/// - Base colour factors; textures are counted in a warning.
+/// - Perspective and orthographic cameras; without one, a camera that sees everything, and a warning.
+/// - Base colour factors and pictures, and vertex colours.
 /// - A primitive with an emissive material is an area light (import/gltf/emitters/emitter.hpp: a rectangle, a polygon,
 ///   a sphere or pieces) with radiance emissiveFactor × KHR_materials_emissive_strength. It emits to the side from
 ///   which its triangles run counter-clockwise, to both if the material is double-sided. It stays an object, with
