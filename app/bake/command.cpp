@@ -38,7 +38,7 @@ constexpr std::uint32_t kPointsInARow = 256;  // row length of the picture that 
 class BakeCommand : public Command {
  public:
   explicit BakeCommand(CLI::App& app)
-      : Command(app, "bake", "V and irradiance at texels of a mesh's lightmap, or at its vertices") {
+      : Command(app, "bake", "compute V and irradiance at texels of a mesh's lightmap, or at its vertices") {
     add_run_options(cli_, options_.run);
     cli_.remove_option(cli_.get_option("--camera"));
     cli_.get_option("--size")

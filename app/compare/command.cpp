@@ -124,7 +124,7 @@ class CompareCommand : public Command {
   static constexpr double kMostGroupSeconds = 30;
 
   explicit CompareCommand(CLI::App& app)
-      : Command(app, "compare", "several methods on the same view samples against a reference") {
+      : Command(app, "compare", "compare methods with a reference on the same view samples") {
     add_run_options(cli_, run_);
     cli_.add_option("-o,--output", run_.out,
                     "folder for metrics.json, metrics.csv, report.html, and each method's pictures")

@@ -52,7 +52,8 @@ void print_table(const Sweep& sweep) {
 class SweepCommand : public Command {
  public:
   explicit SweepCommand(CLI::App& app)
-      : Command(app, "sweep", "error against time of methods over ranges of their options and of the light's size") {
+      : Command(app, "sweep",
+                "measure error against time of methods over ranges of their options and of the light's size") {
     add_run_options(cli_, run_);
     cli_.add_option("-o,--output", run_.out, "folder for sweep.csv, sweep.json and sweep.svg")
         ->required()

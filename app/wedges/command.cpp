@@ -53,7 +53,7 @@ void look_through(scenes::Scene& scene, const std::string& camera, const std::st
 class WedgesCommand : public Command {
  public:
   explicit WedgesCommand(CLI::App& app)
-      : Command(app, "wedges", "penumbra wedges of a light: build, prove by exact signs, export") {
+      : Command(app, "wedges", "build penumbra wedges of a light, prove them by exact signs, and export them") {
     cli_.add_option("SCENE", scene_, "scene file: .json (penumbra-scene/1), .gltf or .glb; or a mesh file")->required();
     cli_.add_option("--light", light_, "the light's name (default: the first)")->type_name("NAME");
     cli_.add_option("--construction", construction_,
