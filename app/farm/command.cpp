@@ -212,7 +212,7 @@ class SubmitCommand : public Command {
   int render_here() {
     const std::size_t before = missing().size();
     if (before == 0) {
-      spdlog::info("all {} frames already exist", frames_.size());
+      spdlog::info("all {} frames exist", frames_.size());
       return 0;
     }
     std::vector<FailedFrame> failed;
@@ -227,7 +227,7 @@ class SubmitCommand : public Command {
     }
     for (const FailedFrame& one : failed) spdlog::error("frame {}: {}", one.frame, one.reason);
     if (failed.empty()) {
-      spdlog::info("all {} frames already exist", frames_.size());
+      spdlog::info("all {} frames exist", frames_.size());
       return 0;
     }
     spdlog::error("{} of {} frames failed; repeat the command to render only these", failed.size(), frames_.size());
@@ -292,7 +292,7 @@ class SubmitCommand : public Command {
   int print_script() {
     const std::vector<std::int64_t> frames = missing();
     if (frames.empty()) {
-      spdlog::info("all {} frames already exist", frames_.size());
+      spdlog::info("all {} frames exist", frames_.size());
       return 0;
     }
     BatchJob job = job_of(frames, static_cast<std::size_t>(chunk_.value_or(1)), kDefaultMostTasks);
@@ -317,7 +317,7 @@ class SubmitCommand : public Command {
     }
     std::vector<std::int64_t> frames = missing();
     if (frames.empty()) {
-      spdlog::info("all {} frames already exist", frames_.size());
+      spdlog::info("all {} frames exist", frames_.size());
       return 0;
     }
     if (round_ > rounds_ || (round_ > 1 && !before.empty() && was_cancelled(before))) return report(frames);
@@ -340,7 +340,7 @@ class SubmitCommand : public Command {
     if (!chunk_ && !cost) cost = measure(frames.front(), exposure);
     frames = missing();
     if (frames.empty()) {
-      spdlog::info("all {} frames already exist", frames_.size());
+      spdlog::info("all {} frames exist", frames_.size());
       return 0;
     }
     const std::size_t chunk = chunk_ ? static_cast<std::size_t>(*chunk_) : frames_per_task(*cost);

@@ -250,10 +250,10 @@ TEST_F(Emitters, OneLightForEveryCommand) {
   EXPECT_THAT(run({"inspect", path("scene.glb")}).out, HasSubstr("light     \"Lamp\": 5 pieces: 5 polygons"));
   const Outcome bits = run({"render", path("scene.glb"), "-o", path("out.exr"), "--bits", path("out.bits")});
   EXPECT_EQ(bits.code, 2);
-  EXPECT_THAT(bits.err, HasSubstr("light \"Lamp\" is cut in 5 pieces"));
+  EXPECT_THAT(bits.err, HasSubstr("light \"Lamp\" is divided into 5 pieces"));
   const Outcome wedges = run({"wedges", path("scene.glb"), "--light", "Lamp", "--validate"});
   EXPECT_EQ(wedges.code, 3);
-  EXPECT_THAT(wedges.err, HasSubstr("light \"Lamp\" is cut in 5 pieces"));
+  EXPECT_THAT(wedges.err, HasSubstr("light \"Lamp\" consists of 5 pieces"));
 
   const Outcome compared = run({"compare", path("scene.glb"), "-o", path("out"), "--size", "24x16", "--light", "Lamp",
                                 "--methods", "view-sample,edge-scatter:rows=exact", "--light-samples", "16", "--runs",

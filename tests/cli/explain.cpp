@@ -149,7 +149,7 @@ TEST_F(ExplainCommand, WeighsATexture) {
   const Outcome outcome =
       run({"wedges", scene, "--explain", "4,4", "--json", path("w.json"), "--svg", path("w.svg"), "--validate"});
   ASSERT_EQ(outcome.code, 0) << outcome.out << outcome.err;
-  EXPECT_THAT(outcome.out, AllOf(HasSubstr("weighed by the light's texture of 2x1 texels"),
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("weighted by the light's texture of 2x1 texels"),
                                  HasSubstr("coverage is weighted by the light's texture")));
   const json wedges = json::parse(read("w.json"));
   EXPECT_EQ(wedges.at("explain").at("texture"), json({2, 1}));

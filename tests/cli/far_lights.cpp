@@ -62,7 +62,7 @@ TEST_F(FarLights, AStarIsASun) {
   const Rendered rays = render(R"({"name": "sol", "sphere": {"center": [9e10, 1.2e11, 0], "radius": 6.96e8}})",
                                {"--light-samples", "256"});
   EXPECT_EQ(rays.method, "raytrace");
-  EXPECT_THAT(rays.err, HasSubstr("raytrace takes its place"));
+  EXPECT_THAT(rays.err, HasSubstr("raytrace is used instead"));
   EXPECT_LT(largest_difference(rays.v, sun.v), 0.1);
 }
 
@@ -78,7 +78,7 @@ TEST_F(FarLights, EveryKindIsDone) {
   for (const auto& [name, light] : lights) {
     const Rendered rendered = render(light);
     EXPECT_EQ(rendered.method, "exact") << name;
-    EXPECT_THAT(rendered.err, HasSubstr("exact takes its place")) << name;
+    EXPECT_THAT(rendered.err, HasSubstr("exact is used instead")) << name;
     for (const float v : rendered.v) EXPECT_TRUE(v >= 0 && v <= 1) << name << " " << v;
     EXPECT_EQ(render(light, {"--light-samples", "16"}).method, "raytrace") << name;
   }
@@ -93,7 +93,7 @@ TEST_F(FarLights, BeyondRaysAreAreas) {
   const Outcome outcome =
       run({"render", path("small.json"), "-o", path("out.exr"), "--light-samples", "16", "--stats", path("s.json")});
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("exact, without light samples, takes its place"));
+  EXPECT_THAT(outcome.err, HasSubstr("exact, without light samples, is used instead"));
   EXPECT_EQ(json::parse(read("s.json")).at("lights")[0].at("method"), "exact");
   EXPECT_THAT(read_exr(path("out.exr")).floats.at("V"), testing::Each(1.0F));
 }

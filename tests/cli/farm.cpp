@@ -99,12 +99,12 @@ exit 0
 TEST_F(Farm, WithTwoWorkersHereIsTheSequence) {
   const Outcome outcome = submit("here", {"--jobs", "2"});
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("all 6 frames are there"));
+  EXPECT_THAT(outcome.err, HasSubstr("all 6 frames exist"));
   for (const char* frame : {"s.0000.exr:", "s.0004.exr:", "s.0010.exr:"}) EXPECT_EQ(count_of(outcome.err, frame), 1u);
   expect_pictures("here");
   const Outcome again = submit("here", {"--jobs", "2"});
   EXPECT_EQ(again.code, 0);
-  EXPECT_THAT(again.err, AllOf(HasSubstr("all 6 frames are there"), Not(HasSubstr(".exr:"))));
+  EXPECT_THAT(again.err, AllOf(HasSubstr("all 6 frames exist"), Not(HasSubstr(".exr:"))));
   for (const char* lost : {"here/s.0002.png", "here/s.0010.exr"}) std::filesystem::remove(path(lost));
   EXPECT_EQ(count_of(submit("here", {"--jobs", "1"}).err, ".exr:"), 2u) << "those between are there";
   expect_pictures("here");
@@ -178,7 +178,7 @@ TEST_F(Farm, AnArrayIsRenderedAndItsSummarySubmitsWhatWasLost) {
   // An array may have at most 3 tasks; `submit` has rendered the first frame.
   EXPECT_THAT(outcome.err, HasSubstr("5 frames in 3 tasks are job 7, its summary is job 8"));
   EXPECT_THAT(read("bin/summary.8"), HasSubstr("2 frames in 2 tasks are job 9, its summary is job 10"));
-  EXPECT_THAT(read("bin/summary.10"), HasSubstr("all 6 frames are there\n0\n"));
+  EXPECT_THAT(read("bin/summary.10"), HasSubstr("all 6 frames exist\n0\n"));
   EXPECT_THAT(read("bin/sbatch.8"), HasSubstr("--dependency=afterany:7\n"));
   expect_pictures("farm");
   std::string logs = outcome.err;
@@ -192,7 +192,7 @@ TEST_F(Farm, AnArrayIsRenderedAndItsSummarySubmitsWhatWasLost) {
     EXPECT_EQ(count_of(own, ".exr: "), 1u) << "and no other: " << own;
     EXPECT_THAT(own, testing::StartsWith("frame " + std::to_string(std::stoi(frame)) + " on "));
   }
-  EXPECT_THAT(submit("farm", {}, environment).err, HasSubstr("all 6 frames are there"));
+  EXPECT_THAT(submit("farm", {}, environment).err, HasSubstr("all 6 frames exist"));
 }
 
 TEST_F(Farm, WhatFailsInEveryRoundIsReported) {

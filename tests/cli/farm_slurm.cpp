@@ -243,7 +243,7 @@ TEST_F(FarmSlurmFull, NothingIsLostWithANodeAndNothingRenderedTwice) {
   const std::string summary_log = farm + "/summary-" + summary + ".log";
   ASSERT_TRUE(eventually(400, [&] { return file_text(summary_log).find('\n') != std::string::npos; }))
       << slurm({"squeue"}) << slurm({"sinfo"}) << logs(farm) << read("slurmctld.out");
-  EXPECT_THAT(file_text(summary_log), HasSubstr("all 12 frames are there"));
+  EXPECT_THAT(file_text(summary_log), HasSubstr("all 12 frames exist"));
   EXPECT_THAT(read("slurmctld.out"), HasSubstr("due to failure of node " + victim));
   const std::string said = logs(farm) + outcome.err;
   for (int frame = 1; frame <= 12; ++frame) {
@@ -286,7 +286,7 @@ TEST_F(FarmSlurmFull, AFrameThatFailsIsReported) {
   ASSERT_EQ(repaired.code, 0) << repaired.err;
   EXPECT_THAT(repaired.err, HasSubstr("1 frames in 1 tasks"));
   EXPECT_TRUE(
-      eventually(120, [&] { return logs(path("farm/s.farm")).find("all 12 frames are there") != std::string::npos; }))
+      eventually(120, [&] { return logs(path("farm/s.farm")).find("all 12 frames exist") != std::string::npos; }))
       << logs(path("farm/s.farm")) << slurm({"squeue"});
 }
 
@@ -310,7 +310,7 @@ TEST_F(FarmSlurmFull, WhatWasCancelledIsReportedAndNotSubmittedAgain) {
                                           "2"};
   const app::ProgramEnding ending = app::run_program(words);
   EXPECT_EQ(ending.code, 0) << ending.errors;
-  EXPECT_TRUE(eventually(120, [&] { return logs(path("t.farm")).find("all 4 frames are there") != std::string::npos; }))
+  EXPECT_TRUE(eventually(120, [&] { return logs(path("t.farm")).find("all 4 frames exist") != std::string::npos; }))
       << logs(path("t.farm")) << slurm({"squeue"});
 }
 

@@ -125,7 +125,7 @@ TEST_F(Frames, ThatAreThereAreSkipped) {
   EXPECT_EQ(read_exr(path("s.0003.exr")).attributes.at("penumbra.exposure"),
             read_exr(path("s.0001.exr")).attributes.at("penumbra.exposure"));
   EXPECT_THAT(again.err, Not(HasSubstr("cut off")));
-  EXPECT_THAT(render(sequence).err, HasSubstr("all 3 pictures are there"));
+  EXPECT_THAT(render(sequence).err, HasSubstr("all 3 pictures already exist"));
 }
 
 /// A file that was cut off, or that another program wrote, counts as missing: it is named, and made again with the same
