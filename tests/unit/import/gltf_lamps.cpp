@@ -69,7 +69,7 @@ TEST_F(GltfReader, LampsBecomeSunsAndSpheres) {
   EXPECT_LT(glm::distance(round.cone->direction, glm::dvec3(0, -1, 0)), 1e-15);
   EXPECT_NEAR(round.cone->inner, 0.25 * 180 / M_PI, 1e-12);
   EXPECT_NEAR(round.cone->outer, 0.5 * 180 / M_PI, 1e-12);
-  EXPECT_THAT(shown.warnings, Contains(HasSubstr("range of 1 lamps ignored")));
+  EXPECT_THAT(shown.warnings, Contains(HasSubstr("range of 1 lamps is ignored")));
 }
 
 /// Blender's exporter writes 683 lumens for each watt of a lamp, but without that factor for emission; and it writes

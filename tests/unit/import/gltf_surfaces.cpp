@@ -217,16 +217,16 @@ TEST_F(GltfSurfaces, WhatAlphaLacksIsNamed) {
   pane.at("/materials/0")["alphaMode"] = "BLEND";
   pane.at("/materials/0/pbrMetallicRoughness")["baseColorFactor"] = {1, 1, 1, 0.5};
   const auto file = write("pane.glb", pane.glb());
-  EXPECT_THAT(mesh::import_mesh(file).notes, Contains(HasSubstr("'Body' is solid")));
+  EXPECT_THAT(mesh::import_mesh(file).notes, Contains(HasSubstr("'Body' becomes solid")));
   EXPECT_THAT(test::input_error([&] { mesh::import_mesh(mesh::open_input(file), {}, {.lenient = false}); }),
-              AllOf(HasSubstr("'Body' is solid"), HasSubstr("--lenient")));
+              AllOf(HasSubstr("'Body' becomes solid"), HasSubstr("--lenient")));
   const auto scene =
       write("scene.json", R"({"format": "penumbra-scene/1", "camera": {"eye": [0, 0, 9], "target": [0, 0, 0]},
       "meshes": [{"file": "pane.glb"}], "lights": [{"polygon": [[0, 5, 0], [1, 5, 0], [0, 5, 1]]}]})");
   EXPECT_THAT([&] { read_scene(scene); },
-              ::testing::ThrowsMessage<Error>(AllOf(HasSubstr("/meshes/0/file"), HasSubstr("'Body' is solid"))));
-  EXPECT_THAT(read_scene(scene, {.lenient = true}).warnings, Contains(HasSubstr("'Body' is solid")));
-  EXPECT_THAT(read_scene(scene, {.needs_light = false}).warnings, Contains(HasSubstr("'Body' is solid")));
+              ::testing::ThrowsMessage<Error>(AllOf(HasSubstr("/meshes/0/file"), HasSubstr("'Body' becomes solid"))));
+  EXPECT_THAT(read_scene(scene, {.lenient = true}).warnings, Contains(HasSubstr("'Body' becomes solid")));
+  EXPECT_THAT(read_scene(scene, {.needs_light = false}).warnings, Contains(HasSubstr("'Body' becomes solid")));
   pane.at("/materials/0/pbrMetallicRoughness/baseColorFactor/3") = 0;
   EXPECT_THAT(read(pane).warnings, Contains(HasSubstr("'Body' is wholly transparent")));
 }

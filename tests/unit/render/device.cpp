@@ -110,7 +110,7 @@ TEST(DeviceFeatures, AModuleIsRefusedForWhatItDeclaresAndTheDeviceLacks) {
     require_features(device, module_with({kShader, kFloat64}), "exact");
     ADD_FAILURE() << "runs without shaderFloat64";
   } catch (const LacksFeature& error) {
-    EXPECT_STREQ(error.what(), "the pass \"exact\" needs shaderFloat64, which the device a device has not");
+    EXPECT_STREQ(error.what(), "the pass \"exact\" needs shaderFloat64, which the device a device lacks");
   }
 }
 
