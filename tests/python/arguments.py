@@ -64,7 +64,7 @@ class Arguments(unittest.TestCase):
             (usage, "/meshes/0/vertices", lambda: parse(with_mesh(vertices=None))),
             (usage, "/meshes/0/vertices.*masked", lambda: parse(with_mesh(vertices=np.ma.masked_equal(TRIANGLE, 1)))),
             (usage, "/meshes/0/faces.*bools", lambda: parse(with_mesh(faces=FACE > 0))),
-            (usage, "/meshes/0: vertices and faces", lambda: parse({**small_scene(), "meshes": [{"vertices": TRIANGLE}]})),
+            (usage, "/meshes/0: expected both vertices and faces", lambda: parse({**small_scene(), "meshes": [{"vertices": TRIANGLE}]})),
             (wrong_input, "/meshes/0/faces: row 0 is .*-1", lambda: parse(with_mesh(faces=[[0, 1, -1]]))),
             (wrong_input, "/meshes/0.*vertex 1.*nan", lambda: parse(with_mesh(vertices=[[0, 0, 0], [nan, 0, 0], [0, 1, 0]]))),
             (wrong_input, "/meshes/0", lambda: parse({**small_scene(), "meshes": [3]})),

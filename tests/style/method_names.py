@@ -12,7 +12,7 @@ from pathlib import Path
 DEFAULTS = {("session/comparison/comparison.hpp", "raytrace"), ("bench/swimming.py", "exact"),
             ("bench/options.cpp", "edge-scatter,view-sample"), ("bench/options.cpp", "edge-scatter,edge-scatter:rows=exact")}
 # Files that measure what papers, or a page, say of certain methods.
-OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py", "bench/scaling_tables.py"}
+OF_PAPERS = {"bench/time_ratios.py", "bench/domes.py", "bench/page_tables.py", "bench/ray_tables.py", "bench/scaling_tables.py"}
 
 
 # Shell lines with what users get by default.
