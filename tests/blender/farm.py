@@ -79,13 +79,13 @@ class Farm(unittest.TestCase):
     def test_a_frame_without_saved_preferences(self):
         run, written = self.frames("good", "-f", "2")
         self.assertEqual((run.returncode, written), (0, [2]), run.stdout)
-        self.assertEqual(os.listdir(path("tmp")), [])
+        self.assertEqual(left_behind(), [])
 
     def test_a_frame_that_fails_is_a_process_that_fails(self):
         run, written = self.frames("broken", "-f", "2")
         self.assertEqual((run.returncode, written), (1, []), run.stdout)
         self.assertIn("Frame 2: 'Block' is hidden from the camera", run.stdout)
-        self.assertEqual(os.listdir(path("tmp")), [])
+        self.assertEqual(left_behind(), [])
 
     def test_frames_that_are_not_rendered_are_named(self):
         """If one of several frames on a command line fails, Blender saves none after it."""
@@ -133,6 +133,11 @@ class Farm(unittest.TestCase):
         process.wait()
         self.assertTrue(eventually(lambda: not any(name.startswith("penumbra-") for name in os.listdir(path("tmp")))))
         self.assertTrue(eventually(lambda: "State:\tZ" in content(f"/proc/{number}/status", "State:\tZ")))
+
+
+def left_behind():
+    """Returns what a run left in its folder for temporary files, except for the folder of Blender's own audio client."""
+    return [name for name in os.listdir(path("tmp")) if not name.startswith("pulse-")]
 
 
 def content(name, otherwise=""):
