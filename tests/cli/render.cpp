@@ -271,7 +271,8 @@ TEST_F(RenderOnce, SpheresAreNotForTheDevice) {
   EXPECT_EQ(named.code, 3);
   EXPECT_THAT(
       named.err,
-      HasSubstr("is a sphere; method edge-scatter supports a sphere, but not with engine=vulkan. Leave the option out"));
+      HasSubstr(
+          "is a sphere; method edge-scatter supports a sphere, but not with engine=vulkan. Leave the option out"));
 }
 
 TEST_F(RenderOnce, MeshesOutsideTheRuleAreAlwaysLit) {
