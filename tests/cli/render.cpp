@@ -18,7 +18,6 @@ namespace {
 using nlohmann::json;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
 
 constexpr const char* kSecond =
     R"({"name": "fill", "rectangle": {"center": [3, 3, 3], "halfU": [0.2, 0, 0], "halfV": [0, 0, 0.2]}})";
