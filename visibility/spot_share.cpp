@@ -111,8 +111,8 @@ double spot_share(const Light& light, const glm::vec3& p, const glm::vec3& n) {
   }
   FacingDisk disk{
       .size = light.radius / length, .cosine = cosine, .scale = light.spot->scale, .offset = light.spot->offset};
-  // As seen from p, the cone's axis lies, from the lamp's middle, along −across: `across` is the component of the
-  // lamp's direction orthogonal to the line of sight.
+  // `across` is the component of the lamp's direction orthogonal to the line of sight. Seen from p, the cone's axis
+  // lies along −across from the lamp's middle.
   const glm::dvec3 across = light.spot->direction - cosine * toward / length;
   disk.sine = glm::length(across);
   const double facing = -glm::dot(toward, glm::dvec3(n)) / length;

@@ -27,7 +27,7 @@ class SceneParts {
  public:
   static constexpr std::string_view kThingEnds = "\xe2\x90\x9f";  ///< ␟, U+241F
 
-  /// What to replace by a file with some of the things.
+  /// The parts of the scene that a file replaces.
   struct Put {
     std::set<std::string> things = {};     ///< things to be replaced; those that the file lacks become empty
     std::set<std::string> shadeless = {};  ///< things whose lamps cast no shadows

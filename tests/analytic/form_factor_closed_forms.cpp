@@ -53,7 +53,7 @@ TEST(FormFactor, OfAParallelRectangle) {
 }
 
 TEST(FormFactor, OfAnUprightRectangleDownToContact) {
-  // As c → 0 the element touches the light: 1/4 at one of its corners, 1/2 between two.
+  // The element touches the light in the limit c → 0: 1/4 at one of its corners, 1/2 between two.
   for (const double c : {5.0, 1.0, 0.1, 1e-3, 1e-6, 1e-12, 1e-20, 1e-30}) {
     const double expected = 2 * upright_corner(1.5, 0.75, c);
     // The rectangle stands at x = c and faces −x; u × v points to +x, away from the element.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // No segment from p to the light meets a triangle if a plane separates the triangle from the hull of p and the light.
-// As for any two convex bodies (Gottschalk, Lin, Manocha 1996), the planes of their faces are tried: those through p
+// The planes of faces are tried, as for any two convex bodies (Gottschalk, Lin, Manocha 1996): those through p
 // and two neighbouring corners of the light, the light's own, the carrier's (objects below it are on no segment to a
 // light point above it), those through p and an edge of the triangle, and the triangle's own. Each test allows for
 // rounding in favour of meeting:

@@ -101,7 +101,7 @@ void ViewWalk::meet(std::uint32_t x, std::uint32_t y, std::vector<Met>& met) con
     const std::uint32_t triangle = triangles_[i];
     if (const std::optional<double> t = cover(ray, scene_.corners(triangle))) met.push_back({*t, triangle});
   });
-  // Of triangles with equal corners, the first in the file wins.
+  // The first in the file wins among triangles with equal corners.
   std::ranges::sort(met, [&](const Met& a, const Met& b) {
     if (a.t != b.t) return a.t < b.t;
     if (scene_.comes_before(a.triangle, b.triangle)) return true;

@@ -101,8 +101,8 @@ TEST_F(MapsSingleShadow, UnderAnEdgeEachPapersFormulaIsAClosedForm) {
   }
 }
 
-// As a rectangle light's side moves past an edge parallel to it, V is linear. So a penumbra on both sides of the border
-// is the truth if the light's half-width replaces the radius of its disk.
+// V is linear while a rectangle light's side moves past an edge parallel to it. So a penumbra on both sides of the
+// border is the truth if the light's half-width replaces the radius of its disk.
 TEST_F(MapsSingleShadow, BothSidesOfAnEdgeAreTheTruthButForTheRadius) {
   const UnderAnEdge edge{0.5, 2};
   for (double x = -1; x < 1; x += 0.01) {

@@ -126,7 +126,7 @@ TEST(AlphaReaches, FromTheFloorToTheLight) {
     for (const double height : {0.001, 1.0, 0.9999 * top}) EXPECT_TRUE(floor.reached_by(at(height))) << height;
     EXPECT_EQ(floor.reached_by(at(1.0001 * top)), endless);
     EXPECT_EQ(floor.reached_by(at(100)), endless);
-    // Of a triangle through the floor, the part above the floor counts.
+    // The part above the floor counts where a triangle passes through the floor.
     EXPECT_TRUE(floor.reached_by({glm::dvec3(0, 0.1, 0), glm::dvec3(1, -9, 1), glm::dvec3(-1, -9, 1)}));
   }
 }

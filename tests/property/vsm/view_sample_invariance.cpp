@@ -82,8 +82,7 @@ TEST_F(Invariance, OrderWindingAndDoublesOfTriangles) {
     tests::LatticeSoup soup(seed, 3);
     SampleRequest request;
     scenes::Scene scene = lattice_scene(soup, request);
-    // Of a face that casts shadow and its copy that does not, either could be seen first: so here all objects cast
-    // shadow.
+    // A face that casts shadow and its copy that does not could each be seen first, so all objects cast shadow here.
     for (scenes::Object& object : scene.objects) object.casts_shadow = true;
     for (scenes::Object& object : scene.objects) object.emits.reset();
     const Picture plain = picture(scene, 48, request);

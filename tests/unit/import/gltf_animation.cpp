@@ -229,8 +229,8 @@ TEST_F(GltfAnimation, OutlinesOfLightsMoveNoOrigin) {
   EXPECT_EQ(read(gltf, 1).origin, std::optional(glm::dvec3(0.5, 0.5, 0)));
 }
 
-/// Whatever the scales of its nodes, a lamp is where their transforms put its node's origin; animation of other nodes
-/// changes nothing.
+/// A lamp is where its nodes' transforms put its node's origin, for any scales; animation of other nodes changes
+/// nothing.
 TEST_F(GltfAnimation, LampsUnderWhatIsScaledToNothingStay) {
   for (const bool animated : {false, true}) {
     Gltf gltf;
@@ -368,8 +368,8 @@ TEST_F(GltfAnimation, VerticesWithoutWeightsMoveWithTheirNode) {
   EXPECT_THAT(scene.warnings, Contains("'Body' has vertices that no joint moves; they move with their node"));
 }
 
-/// Of clips that move the same objects only one is played: the first, or the requested one. A clip that moves other
-/// objects is played, too.
+/// Only one of several clips that move the same objects is played: the first, or the requested one. A clip that moves
+/// other objects is played, too.
 TEST_F(GltfAnimation, OneOfSeveralClips) {
   Gltf gltf;
   gltf.animate(0, "translation", {0, 1}, {1, 0, 0, 1, 0, 0});
